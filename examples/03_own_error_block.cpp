@@ -54,7 +54,7 @@ double miss(const Problem& problem, const Sample& sample, const Eigen::VectorXd&
   const auto position_of = [&](const std::string& joint) {
     return *sample.position(joint) + truth(problem.table().index(joint));
   };
-  const auto& arm = problem.sensors()[0].chains()[0];
+  const auto& arm = problem.sensors()[0].chains()[0].chain();
   return BallBar{}(forward_kinematics(arm, position_of).translation, kBar)(0);
 }
 

@@ -47,13 +47,9 @@ Sample measure(const Problem& problem, const Eigen::VectorXd& truth, SeededRando
   Sample sample;
   sample.joint_names = {"shoulder_pan", "shoulder_lift", "elbow"};
   for (int i = 0; i < 3; ++i) sample.joint_positions.push_back(random.uniform(-1.2, 1.2));
-  const MountedSensor& arm = problem.sensors()[0];
+  const SampledChain& arm = problem.sensors()[0].chains()[0];
   const std::span<const double> values(truth.data(), static_cast<std::size_t>(truth.size()));
-  Vector3<double> seen =
-      forward_kinematics(
-          arm.chains()[0], [&](const auto& name) { return *sample.position(name); },
-          corrections_for(arm.chain_parameters()[0], values))
-          .translation;
+  Vector3<double> seen = arm.tip(sample, corrections_for(arm.parameters(), values)).translation;
   for (int i = 0; i < 3; ++i) seen(i) += 1e-4 * random.normal();
   sample.observations = {{"arm", {{"tip", Vector3<double>::Zero()}}},
                          {"tracker", {{"base", seen}}}};

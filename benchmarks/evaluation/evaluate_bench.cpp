@@ -68,8 +68,8 @@ BENCHMARK(BM_residuals_and_jacobian)->Arg(100);
 /// The pose of a sensor's frame in the base, walked in jets.
 Pose<Wide> walked(const MountedSensor& model, const Sample& sample, std::span<const Wide> jets) {
   return forward_kinematics(
-      model.chains()[0], [&](const std::string& joint) { return *sample.position(joint); },
-      corrections_for(model.chain_parameters()[0], jets));
+      model.chains()[0].chain(), [&](const std::string& joint) { return *sample.position(joint); },
+      corrections_for(model.chains()[0].parameters(), jets));
 }
 
 /// Camera against arm, all of it in jets.

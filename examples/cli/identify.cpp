@@ -61,10 +61,10 @@ Search search(const Config& config, const Robot& robot, std::span<const Sample> 
   Search all;
   Diagnostics diagnostics;
   Calibration calibration =
-      assemble(with_all_candidates(config, robot), robot, samples, diagnostics);
+      assemble(with_all_candidates(config, robot, samples), robot, samples, diagnostics);
   diagnostics.throw_if_errors();
   const AnyProblem& problem = *calibration.steps.front().problem;
-  all.task = identify_task(config, problem, geometry_only);
+  all.task = identify_task(config, problem, samples, geometry_only);
   all.found = identify(calibration, samples, all.task.base, all.task.candidates);
   all.config = identified_config(config, all.task, all.found, problem);
   return all;

@@ -23,8 +23,8 @@ std::vector<std::string> moved_joints(const StudyInput& input) {
   const AnyProblem& problem = *input.calibration.steps.back().problem;
   std::set<std::string> joints;
   for (const MountedSensor& sensor : problem.sensors()) {
-    for (const RuntimeChain& chain : sensor.chains()) {
-      for (const ChainJoint& joint : chain.joints) {
+    for (const SampledChain& chain : sensor.chains()) {
+      for (const ChainJoint& joint : chain.chain().joints) {
         if (moves(joint.type)) joints.insert(std::string(joint.drive.joint));
       }
     }

@@ -2,7 +2,10 @@
 // through a mimic joint, a sliding joint and a base on the moving arm; recovery of injected errors.
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "kinecal/errors.hpp"
+#include "kinecal/kinematics/gravity_load.hpp"
 #include "support/oracle_problem.hpp"
 #include "support/sums.hpp"
 
@@ -12,7 +15,7 @@ namespace {
 const std::vector<std::string> kModelled = {
     "elbow_gear_ratio",       "elbow_eccentric_sin",        "elbow_eccentric_cos",
     "torso_joint_gear_ratio", "shoulder_pan_eccentric_sin", "finger_gear_ratio",
-    "wrist_gear_ratio"};
+    "wrist_gear_ratio",       "elbow_second_harmonic_sin"};
 
 ParameterTable modelled_table() {
   ParameterTable table = test::scene_table();
@@ -88,15 +91,180 @@ TEST(JointModels, HaveTheRowsOfTheOracle) {
   check({"arm", "camera"}, "forearm");  // joints passed from child to parent
 }
 
-TEST(JointModels, AreTheirFormulas) {
-  const OfJointModels<double> v = {0.1, 0.02, -0.03};
-  const double q = 0.7;
-  EXPECT_DOUBLE_EQ(joint_model_change(q, v),
-                   0.1 * q + 0.02 * std::sin(q) - 0.03 * (std::cos(q) - 1.0));
-  const auto d = joint_model_derivatives(q, v);
-  EXPECT_DOUBLE_EQ(d[0], q);
-  EXPECT_DOUBLE_EQ(d[1], std::sin(q));
-  EXPECT_DOUBLE_EQ(d[2], std::cos(q) - 1.0);
+/// Values that Gauss-Newton steps from zero lead to.
+Eigen::VectorXd solved(const Problem& problem, const std::vector<std::string>& names) {
+  Eigen::VectorXd found = Eigen::VectorXd::Zero(problem.table().size());
+  const FreeSet free = test::free_of(problem.table(), names);
+  constexpr int kSteps = 8;
+  for (int step = 0; step < kSteps; ++step) {
+    const NormalEquations sums =
+        normal_equations(problem, {found.data(), static_cast<std::size_t>(found.size())}, &free);
+    found(free.parameters()) -= sums.hessian.ldlt().solve(sums.gradient);
+  }
+  return found;
+}
+
+/// Problems whose samples are of a robot without errors: a test then changes the positions that its
+/// encoders read.
+class MeasuredJoints : public ::testing::Test {
+ protected:
+  MeasuredJoints() {
+    robot_ = test::mobile_manipulator();
+    robot_.set_weight({{{"forearm", {2.0, {0.1, 0.0, 0.02}}}, {"hand", {1.0, {0.0, 0.05, 0.0}}}},
+                       {0.0, 0.0, -9.81},
+                       "hand"});
+    for (const Sample& sample : test::exact_samples(without_models(), values_, 60)) {
+      samples_.push_back(sample);
+    }
+  }
+
+  [[nodiscard]] Problem problem(const std::vector<std::string>& names) const {
+    ParameterTable table = test::scene_table();
+    for (const std::string& name : names) {
+      if (table.find(name) < 0) table.add({.name = name});
+    }
+    Problem made(robot_, "base_link", table, test::kSceneFrames);
+    made.add_sensor(ChainPoint{}, {"arm", "hand"});
+    made.add_sensor(DepthCamera{}, {"camera", "camera_optical_frame"});
+    made.add_block("b", PointToPoint{}, {"camera", "arm"});
+    return made;
+  }
+  /// What the solution is from samples whose encoders read `change` more.
+  template <class Change>
+  [[nodiscard]] std::map<std::string, double> found(const std::vector<std::string>& names,
+                                                    const Change& change) const {
+    Problem of_models = problem(names);
+    for (Sample sample : samples_) {
+      change(sample);
+      of_models.add_sample(sample);
+    }
+    const Eigen::VectorXd all = solved(of_models, names);
+    std::map<std::string, double> by_name;
+    for (const std::string& name : names) by_name[name] = all(of_models.table().index(name));
+    return by_name;
+  }
+  [[nodiscard]] Problem without_models() {
+    Problem made = problem({});
+    values_.assign(static_cast<std::size_t>(made.table().size()), 0.0);
+    return made;
+  }
+  static double& position(Sample& sample, const std::string& joint) {
+    for (std::size_t i = 0; i < sample.joint_names.size(); ++i) {
+      if (sample.joint_names[i] == joint) return sample.joint_positions[i];
+    }
+    throw std::invalid_argument(joint);
+  }
+
+  Robot robot_;
+  std::vector<double> values_;
+  std::vector<Sample> samples_;
+};
+
+TEST_F(MeasuredJoints, OfACoupledWristGiveTheShare) {
+  const auto of = found({"wrist", "wrist_coupling_elbow"}, [](Sample& sample) {
+    position(sample, "wrist") -= 0.03 * position(sample, "elbow") + 0.01;
+  });
+  EXPECT_NEAR(of.at("wrist_coupling_elbow"), 0.03, 1e-9);
+  EXPECT_NEAR(of.at("wrist"), 0.01, 1e-9);
+}
+
+TEST_F(MeasuredJoints, OfAnArmThatSagsGiveItsCompliance) {
+  constexpr double kCompliance = 2e-3;
+  const auto of = found({"elbow", "elbow_sag"}, [&](Sample& sample) {
+    sample.conditions["payload"] = 0.5;
+    const double truth = position(sample, "elbow");
+    for (int round = 0; round < 50; ++round) {  // the load is that at the measured positions
+      GravityLoads loads(
+          robot_, [&](const std::string& joint) { return sample.position(joint).value_or(0.0); });
+      loads.add_links();
+      loads.add("hand", Vector3<double>::Zero(), 0.5);
+      position(sample, "elbow") = truth - kCompliance * loads.of("elbow");
+    }
+  });
+  EXPECT_NEAR(of.at("elbow_sag"), kCompliance, 1e-9);
+}
+
+TEST_F(MeasuredJoints, OfAGearWithPlayGiveTheGap) {
+  int n = 0;
+  const auto of = found({"elbow_backlash"}, [&](Sample& sample) {
+    const double direction = ++n % 3 == 0 ? -1.0 : 1.0;
+    sample.joint_moves.assign(sample.joint_names.size(), 0.2 * direction);
+    position(sample, "elbow") += 0.5 * 0.004 * direction;  // the motor leads
+  });
+  EXPECT_NEAR(of.at("elbow_backlash"), 0.004, 1e-9);
+}
+
+TEST_F(MeasuredJoints, OfACameraThatLagsGiveTheTime) {
+  int n = 0;
+  const auto of = found({"camera_lag", "arm_lag"}, [&](Sample& sample) {
+    for (std::size_t i = 0; i < sample.joint_names.size(); ++i) {
+      const double velocity = 0.5 * std::sin(1.7 * ++n);
+      sample.joint_velocities.push_back(velocity);
+      sample.joint_positions[i] -= 0.015 * velocity;
+    }
+  });
+  EXPECT_NEAR(of.at("camera_lag"), 0.015, 1e-6);
+  EXPECT_NEAR(of.at("arm_lag"), 0.015, 1e-6);
+}
+
+TEST_F(MeasuredJoints, SayWhatASampleLacks) {
+  const auto message = [&](const std::string& name) {
+    Problem of_models = problem({name});
+    try {
+      Sample sample = samples_.front();
+      sample.joint_moves.clear();
+      of_models.add_sample(sample);
+    } catch (const SampleError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(message("camera_lag").find("velocity"), std::string::npos);
+  EXPECT_NE(message("elbow_backlash").find("backlash needs samples in the order"),
+            std::string::npos);
+  EXPECT_EQ(message("elbow_sag"), "");
+  robot_.set_weight({});
+  EXPECT_THROW((void)problem({"elbow_sag"}), RobotError);
+}
+
+/// Ten times a turn.
+struct Worm {
+  static constexpr std::array<ParameterInfo, 2> kParameters = {
+      {{"worm_sin", "rad"}, {"worm_cos", "rad"}}};
+  std::array<double, 2> operator()(const JointReading& joint) const {
+    return {std::sin(10.0 * joint.position()), std::cos(10.0 * joint.position()) - 1.0};
+  }
+};
+
+TEST_F(MeasuredJoints, HaveModelsOfAUser) {
+  register_joint_model(Worm{});
+  register_joint_model(Worm{});
+  const auto of = found({"elbow_worm_sin", "elbow_worm_cos"}, [&](Sample& sample) {
+    const double truth = position(sample, "elbow");
+    for (int round = 0; round < 50; ++round) {
+      const double q = position(sample, "elbow");
+      position(sample, "elbow") = truth - 0.001 * std::sin(10 * q) - 0.002 * (std::cos(10 * q) - 1);
+    }
+  });
+  EXPECT_NEAR(of.at("elbow_worm_sin"), 0.001, 1e-9);
+  EXPECT_NEAR(of.at("elbow_worm_cos"), 0.002, 1e-9);
+  struct Other {
+    static constexpr std::array<ParameterInfo, 1> kParameters = {{{"worm_sin", "rad"}}};
+    std::array<double, 1> operator()(const JointReading&) const { return {0.0}; }
+  };
+  EXPECT_THROW(register_joint_model(Other{}), std::invalid_argument);
+}
+
+TEST_F(MeasuredJoints, AMimicJointHasErrorsOfItsOwn) {
+  const Robot& robot = robot_;
+  const auto of = joint_model_parameter(robot, "elbow_mimic_offset");
+  ASSERT_TRUE(of.has_value());
+  EXPECT_EQ(of->fault, "does not mimic another");
+  EXPECT_EQ(joint_model_parameter(robot, "torso_joint_eccentric_sin")->fault,
+            "slides; only a joint that rotates has this parameter");
+  EXPECT_EQ(joint_model_parameter(robot, "elbow_coupling_torso_joint")->unit, "rad/m");
+  EXPECT_EQ(joint_model_parameter(robot, "torso_joint_sag")->unit, "m/N");
+  EXPECT_EQ(joint_model_parameter(robot, "elbow_coupling_nothing"), std::nullopt);
 }
 
 TEST(JointModels, AreRecoveredByGaussNewtonSteps) {
@@ -111,14 +279,7 @@ TEST(JointModels, AreRecoveredByGaussNewtonSteps) {
     truth[static_cast<std::size_t>(table.index(name))] = value = -0.8 * value;
   }
   for (const Sample& sample : test::exact_samples(problem, truth, 60)) problem.add_sample(sample);
-  Eigen::VectorXd found = Eigen::VectorXd::Zero(table.size());
-  const FreeSet free = test::free_of(table, names);
-  constexpr int kSteps = 8;
-  for (int step = 0; step < kSteps; ++step) {
-    const NormalEquations sums =
-        normal_equations(problem, {found.data(), static_cast<std::size_t>(found.size())}, &free);
-    found(free.parameters()) -= sums.hessian.ldlt().solve(sums.gradient);
-  }
+  const Eigen::VectorXd found = solved(problem, names);
   for (const std::string& name : names) {
     const int i = table.index(name);
     EXPECT_NEAR(found(i), truth[static_cast<std::size_t>(i)], 1e-8) << name;

@@ -5,6 +5,7 @@
 #include <complex>
 #include <unsupported/Eigen/AutoDiff>
 
+#include "kinecal/geometry/jet.hpp"
 #include "support/static_robot.hpp"
 
 namespace kinecal {

@@ -161,16 +161,6 @@ TEST(SceneJson, NumbersAreShortAndAlwaysNumbers) {
   EXPECT_EQ(YAML::Load(scene_json(scene))["samples"][0]["q"][0].as<double>(), 0.0);
 }
 
-TEST(SceneJson, ACorrectionHasTheParametersOfJointModelsIfTheyMatter) {
-  RobotScene scene = one_of_everything();
-  EXPECT_FALSE(YAML::Load(scene_json(scene))["joints"][0]["after"]["model"]);
-  scene.joints[0].after->model = {0.01, -0.002, 0.003};
-  const YAML::Node joint = YAML::Load(scene_json(scene))["joints"][0];
-  EXPECT_EQ(joint["after"]["model"].as<std::vector<double>>(),
-            (std::vector<double>{0.01, -0.002, 0.003}));
-  EXPECT_FALSE(joint["before"]["model"]);
-}
-
 TEST(SceneJson, AnEmptySceneIsAnObject) {
   const YAML::Node json = YAML::Load(scene_json({}));
   EXPECT_EQ(json["samples"].size(), 0U);

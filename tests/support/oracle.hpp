@@ -117,7 +117,8 @@ S oracle_position(const Robot& robot, const Joint& joint, const Sample& sample,
     const double q = sample.joint_positions[i];
     return q * (values(joint.name + "_gear_ratio") + 1.0) + values(joint.name) +
            std::sin(q) * values(joint.name + "_eccentric_sin") +
-           (std::cos(q) - 1.0) * values(joint.name + "_eccentric_cos");
+           (std::cos(q) - 1.0) * values(joint.name + "_eccentric_cos") +
+           std::sin(2.0 * q) * values(joint.name + "_second_harmonic_sin");
   }
   throw std::invalid_argument("the oracle does not know where joint '" + joint.name + "' stands");
 }

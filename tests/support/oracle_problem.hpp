@@ -237,7 +237,7 @@ OracleProblem oracle_of(const BasicProblem<S>& problem) {
   for (const MountedSensor& mounted : problem.sensors()) {
     sensors.push_back({mounted.mount(), std::string(mounted.sensor().type())});
   }
-  const std::string base = problem.sensors().front().chains().front().base;
+  const std::string base = problem.sensors().front().chains().front().chain().base;
   return {mobile_manipulator(), base, problem.table(), sensors};
 }
 

@@ -84,8 +84,8 @@ Pose<double> tip_pose(const BasicProblem<S>& problem, std::size_t sensor, const 
                       const Sample& sample, std::span<const double> values) {
   const MountedSensor& model = problem.sensors()[sensor];
   const OraclePose<double> pose =
-      oracle_pose(mobile_manipulator(), model.chains().front().base, model.mount().frame, frame,
-                  sample, OracleValues<double>(problem.table(), values));
+      oracle_pose(mobile_manipulator(), model.chains().front().chain().base, model.mount().frame,
+                  frame, sample, OracleValues<double>(problem.table(), values));
   return {pose.r, pose.t};
 }
 

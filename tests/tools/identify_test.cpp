@@ -64,9 +64,9 @@ Calibration assembled(const Config& config, const Robot& robot, std::span<const 
 Found find(const Config& config, const Robot& robot, std::span<const Sample> samples,
            bool geometry_only = false) {
   Found found;
-  Calibration calibration = assembled(with_all_candidates(config, robot), robot, samples);
+  Calibration calibration = assembled(with_all_candidates(config, robot, samples), robot, samples);
   const AnyProblem& problem = *calibration.steps.front().problem;
-  found.task = identify_task(config, problem, geometry_only);
+  found.task = identify_task(config, problem, samples, geometry_only);
   found.identified = identify(calibration, samples, found.task.base, found.task.candidates);
   found.config = identified_config(config, found.task, found.identified, problem);
   return found;
@@ -134,14 +134,14 @@ class SimulatedArm {
     samples_ = poses(100);
     others_ = poses(200);
     config_ = tracker_config(robot_, samples_);
-    wide_ = with_all_candidates(config_, robot_);
+    wide_ = with_all_candidates(config_, robot_, samples_);
   }
 
   /// Makes some candidates wrong, of the size of real errors; returns their numbers.
   /// @param turned  a joint whose zero is off, and by how much, radians
   std::vector<int> spoil(int errors, const std::string& turned = "", double by = 1.5708 + 0.02) {
     const Calibration calibration = assembled(wide_, robot_, samples_);
-    task_ = identify_task(config_, *calibration.steps.front().problem);
+    task_ = identify_task(config_, *calibration.steps.front().problem, samples_);
     truth_ = calibration.table;
     for (const auto& [name, value] :
          {std::pair("tracker_frame_x", 1.5), std::pair("tracker_frame_y", -0.7),

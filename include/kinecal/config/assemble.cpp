@@ -168,6 +168,19 @@ bool add_models(AnyProblem& problem, const StepConfig& step, std::span<const Sam
   return diagnostics.errors.size() == before;
 }
 
+/// The robot with the gravity and payload of a configuration.
+[[nodiscard]] Robot with_weight(Robot robot, const Config& config, Diagnostics& diagnostics) {
+  RobotWeight weight = robot.weight();
+  if (config.gravity) weight.gravity = *config.gravity;
+  weight.payload = config.payload_link;
+  try {
+    robot.set_weight(std::move(weight));
+  } catch (const RobotError& e) {
+    diagnostics.error(config.place, fmt::format("payload_link or gravity: {}", e.what()));
+  }
+  return robot;
+}
+
 /// Prepares the search for unknown poses of a step: the frames, and a few samples, with lines of
 /// sight instead of pixels, because the search also looks behind the camera.
 void prepare_search(CalibrationStep& step, const Config& config, const StepConfig& of_config,
@@ -200,9 +213,10 @@ void prepare_search(CalibrationStep& step, const Config& config, const StepConfi
 }  // namespace
 }  // namespace detail
 
-Calibration assemble(const Config& given, const Robot& robot, std::span<const Sample> samples,
+Calibration assemble(const Config& given, const Robot& of_urdf, std::span<const Sample> samples,
                      Diagnostics& diagnostics) {
   Calibration calibration;
+  const Robot robot = detail::with_weight(of_urdf, given, diagnostics);
   if (!robot.has_link(given.base_link)) {
     diagnostics.error(given.base_link_place.value_or(given.place),
                       fmt::format("base_link{}: no link '{}' in robot '{}'{}",

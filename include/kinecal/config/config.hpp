@@ -120,8 +120,10 @@ struct StepConfig {
 struct Config {
   std::string base_link = "base_link";                 ///< link in which measurements are compared
   std::optional<SourceLocation> base_link_place = {};  ///< empty if the file does not set base_link
-  std::vector<StepConfig> steps;                       ///< in the order in which they are solved
-  SourceLocation place;                                ///< the file
+  std::optional<Vector3<double>> gravity = {};  ///< (3) m/s^2, in the root link; empty: down its z
+  std::string payload_link;       ///< carries the condition `payload` of a sample, kg; empty: none
+  std::vector<StepConfig> steps;  ///< in the order in which they are solved
+  SourceLocation place;           ///< the file
 };
 
 }  // namespace kinecal

@@ -19,7 +19,7 @@ struct ConfigProgress {
   FreeAxes free_axes;  ///< free in one of the steps so far
 };
 
-/// base_link, verbose and max_num_iterations of the file or of a step.
+/// base_link, gravity, payload_link, verbose and max_num_iterations of the file or of a step.
 /// @return  max_num_iterations, or the fallback
 inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress) {
   map.ignore({"verbose"});
@@ -34,6 +34,12 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
                            "; all steps must have the same base_link");
     }
   }
+  if (std::optional<ConfigMap> gravity = map.map("gravity", "gravity")) {
+    const double x = gravity->number("x", 0.0), y = gravity->number("y", 0.0);
+    progress.config.gravity = {x, y, gravity->number("z", 0.0)};
+    gravity->report_unknown();
+  }
+  if (const auto link = map.text("payload_link")) progress.config.payload_link = *link;
   return map.count("max_num_iterations", fallback);
 }
 

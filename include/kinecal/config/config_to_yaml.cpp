@@ -172,6 +172,13 @@ std::string config_to_yaml(const Config& config, const std::string& title,
   }
   text += fmt::format("\nbase_link: {}\nmax_num_iterations: {}\n",
                       detail::name_to_yaml(config.base_link), step.max_num_iterations);
+  if (config.gravity) {
+    const Vector3<double>& g = *config.gravity;
+    text += fmt::format("gravity: {{x: {}, y: {}, z: {}}}\n", detail::number_to_yaml(g.x()),
+                        detail::number_to_yaml(g.y()), detail::number_to_yaml(g.z()));
+  }
+  if (!config.payload_link.empty())
+    text += fmt::format("payload_link: {}\n", detail::name_to_yaml(config.payload_link));
   text += detail::models_text(step) + detail::free_text(step, why) + detail::numbers_text(step);
   text += "\nerror_blocks:\n";
   for (const BlockConfig& block : step.error_blocks) text += detail::block_text(block);

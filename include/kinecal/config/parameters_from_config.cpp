@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "kinecal/geometry/rpy.hpp"
+#include "kinecal/parameters/joint_models.hpp"
 #include "kinecal/parameters/joint_parameters.hpp"
 #include "kinecal/text/frame_name.hpp"
 
@@ -70,26 +71,14 @@ inline void add_joint(ParameterTable& table, const Robot& robot, const std::stri
 /// @returns  false if the name is not one of a joint and a joint model
 inline bool add_joint_model(ParameterTable& table, const Robot& robot, const std::string& name,
                             const SourceLocation& place, Diagnostics& diagnostics) {
-  for (std::size_t k = 0; k < kJointModelSize; ++k) {
-    const std::string suffix = "_" + std::string(kJointModelNames[k]);
-    if (!name.ends_with(suffix)) continue;
-    const std::string of = name.substr(0, name.size() - suffix.size());
-    if (!robot.has_joint(of)) continue;
-    const Joint& joint = robot.joint(of);
-    if (!moves(joint.type) || joint.mimic) {
-      diagnostics.error(
-          place, fmt::format("'{}': joint '{}' {}", name, of,
-                             joint.mimic ? "mimics another; name that one" : "does not move"));
-    } else if (!may_have_model(joint.type, k)) {
-      diagnostics.error(place, fmt::format("'{}': joint '{}' slides; only a joint that rotates has "
-                                           "this parameter",
-                                           name, of));
-    } else {
-      add_joint_model_parameter(table, of, k);
-    }
-    return true;
+  const std::optional<JointModelParameter> of = joint_model_parameter(robot, name);
+  if (!of) return false;
+  if (of->fault.empty()) {
+    table.add({.name = name, .unit = of->unit});
+  } else {
+    diagnostics.error(place, fmt::format("'{}': joint '{}' {}", name, of->joint, of->fault));
   }
-  return false;
+  return true;
 }
 
 /// Reports a fixed frame that is in the URDF, and warns of one without features.
@@ -136,6 +125,11 @@ inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
   }
 }
 
+/// Name of the lag of a sensor behind the positions of the joints.
+[[nodiscard]] inline std::string lag_name(const ModelConfig& model) {
+  return parameter_name(mount_from(model).parameter_prefix(), kLag.name);
+}
+
 /// Names that free_params of a step may contain.
 [[nodiscard]] inline std::vector<std::string> free_param_names(const Robot& robot,
                                                                const StepConfig& step) {
@@ -143,14 +137,13 @@ inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
   for (const Joint& joint : robot.joints()) {
     if (!moves(joint.type) || joint.mimic) continue;
     names.push_back(joint.name);
-    for (const std::string_view part : kJointModelNames) {
-      names.push_back(parameter_name(joint.name, part));
-    }
+    for (std::string& name : joint_model_names(robot, joint)) names.push_back(std::move(name));
   }
   for (const ModelConfig& model : step.models) {
     for (const ParameterInfo& info : sensor_entry(model).sensor->parameters()) {
       names.push_back(parameter_name(mount_from(model).parameter_prefix(), info.name));
     }
+    names.push_back(lag_name(model));
   }
   for (const BlockConfig& block : step.error_blocks) {
     for (const ParameterInfo& info : own_parameters(block)) {
@@ -160,10 +153,21 @@ inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
   return names;
 }
 
+/// Adds the lag of a sensor.
+/// @returns  false if the name is not one
+inline bool add_lag(ParameterTable& table, const StepConfig& step, const std::string& name) {
+  const bool is_lag =
+      std::any_of(step.models.begin(), step.models.end(),
+                  [&](const ModelConfig& model) { return name == lag_name(model); });
+  if (is_lag) table.add({.name = name, .unit = std::string(kLag.unit)});
+  return is_lag;
+}
+
 inline void add_params(ParameterTable& table, const Robot& robot, const StepConfig& step,
                        Diagnostics& diagnostics) {
   for (const FreeParamConfig& param : step.free_params) {
     if (table.find(param.name) >= 0) continue;  // of a sensor or block
+    if (add_lag(table, step, param.name)) continue;
     if (robot.has_joint(param.name)) {
       add_joint(table, robot, param.name, param.place, diagnostics);
       continue;
@@ -192,7 +196,8 @@ inline void add_valued_joints(ParameterTable& table, const Robot& robot, const S
       add_joint(table, robot, name, place, diagnostics);
       return;
     }
-    if (add_joint_model(table, robot, name, place, diagnostics)) return;
+    if (add_lag(table, step, name) || add_joint_model(table, robot, name, place, diagnostics))
+      return;
     std::vector<std::string> names = free_param_names(robot, step);
     for (const Parameter& parameter : table) names.push_back(parameter.name);
     diagnostics.error(place, fmt::format("{} '{}' is not a parameter of this calibration{}", what,

@@ -19,7 +19,7 @@
 #include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/errors/prior.hpp"
 #include "kinecal/kinematics/chain.hpp"
-#include "kinecal/kinematics/joint_model.hpp"
+#include "kinecal/parameters/joint_models.hpp"
 #include "kinecal/text/frame_name.hpp"
 
 namespace kinecal::detail {
@@ -41,7 +41,7 @@ struct KnownNames {
       return name.ends_with(suffix) && has_frame(name.substr(0, name.size() - suffix.size()));
     };
     return has_frame(name) || std::any_of(kFrameAxes.begin(), kFrameAxes.end(), is_part) ||
-           std::any_of(kJointModelNames.begin(), kJointModelNames.end(), is_part);
+           joint_model_parameter(robot, name).has_value();
   }
   /// True if nothing shows that a name is misspelt: it is known, or, without samples, it may be a
   /// frame of features and resembles no other name.

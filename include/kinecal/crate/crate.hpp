@@ -143,11 +143,17 @@ class Crate {
       constexpr std::size_t i = detail::joint_index(RobotOf::kJoints, P::kOwner);
       add_joint_offset(table, P::kOwner, RobotOf::kJoints[i].type);
     } else if constexpr (P::kKind == ParameterKind::joint_model) {
+      if constexpr (requires { typename P::Model; }) register_joint_model(typename P::Model{});
       for (const ParameterId& id : P::kIds) {
-        add_joint_model_parameter(table, P::kOwner, joint_model_index(id.part));
+        if (table.find(id.name()) >= 0) continue;
+        table.add({.name = id.name(), .unit = joint_model_parameter(robot(), id.full_name)->unit});
       }
     } else if constexpr (is_frame(P::kKind)) {
       add_parameters(table, P::kOwner, kFrameParameters);
+    } else if constexpr (P::kKind == ParameterKind::sensor) {
+      for (const ParameterId& id : P::kIds) {
+        if (id.part == "lag") add_parameters(table, P::kOwner, {&kLag, 1});
+      }
     }
   }
 

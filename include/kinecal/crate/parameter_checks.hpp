@@ -5,6 +5,7 @@
 
 #include "kinecal/crate/crate_parts.hpp"
 #include "kinecal/kinematics/known_name.hpp"
+#include "kinecal/parameters/joint_models.hpp"
 #include "kinecal/parameters/joint_parameters.hpp"
 #include "kinecal/text/sentence.hpp"
 
@@ -45,7 +46,7 @@ template <class Parameter, bool kIsKnown = false>
 struct NameOfModel {
   static_assert(kIsKnown,
                 "kinecal: no joint model that fits the joint has this parameter; "
-                "kinematics/joint_model.hpp has their names");
+                "parameters/joint_model.hpp has their names");
 };
 template <class Parameter, class Found, bool kIsKnown = false>
 struct OwnerOfParameter {
@@ -76,6 +77,9 @@ template <class Part>
     }
     return false;
   };
+  if constexpr (requires { typename Part::Chain; }) {
+    if (id.part == kLag.name) return true;
+  }
   if constexpr (requires { Part::Model::kParameters; }) return have_it(Part::Model::kParameters);
   if constexpr (requires { Part::Error::kParameters; }) return have_it(Part::Error::kParameters);
   return false;
@@ -107,13 +111,32 @@ struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_offset> {
   /// True for an offset, and for a parameter of a model that suits the joint.
   [[nodiscard]] static constexpr bool fits(const ParameterId& id) {
     if (P::kKind == ParameterKind::joint_offset) return true;
-    const std::size_t model = joint_model_index(id.part);
-    return model < kJointModelSize && may_have_model(kJoint.type, model);
+    const bool is_mimic = kJoint.mimic.has_value();
+    if constexpr (requires { typename P::Model; }) {
+      return suits_joint<typename P::Model>(kJoint.type, is_mimic);
+    }
+    return std::apply(
+        [&](const auto&... models) {
+          return (is_of_model<std::decay_t<decltype(models)>>(id, is_mimic) || ...);
+        },
+        JointModels{});
   }
-  using type = FirstOf<Unless<Found::kExists, JointOfOffset<P, Found>>,
-                       Unless<moves(kJoint.type), MotionOfOffset<P>>,
-                       Unless<!kJoint.mimic.has_value(), DriveOfOffset<P>>,
-                       Unless<std::all_of(P::kIds.begin(), P::kIds.end(), fits), NameOfModel<P>>>;
+  /// True for a parameter of a model that suits the joint.
+  template <class M>
+  [[nodiscard]] static constexpr bool is_of_model(const ParameterId& id, bool is_mimic) {
+    if (!suits_joint<M>(kJoint.type, is_mimic)) return false;
+    for (const ParameterInfo& info : M::kParameters) {
+      if (!id.part.starts_with(info.name)) continue;
+      const std::string_view rest = id.part.substr(info.name.size());
+      if (rest.empty() == (partner_of<M>() == ModelPartner::none)) return true;
+    }
+    return false;
+  }
+  using type = FirstOf<
+      Unless<Found::kExists, JointOfOffset<P, Found>>,
+      Unless<moves(kJoint.type), MotionOfOffset<P>>,
+      Unless<P::kKind == ParameterKind::joint_model || !kJoint.mimic.has_value(), DriveOfOffset<P>>,
+      Unless<std::all_of(P::kIds.begin(), P::kIds.end(), fits), NameOfModel<P>>>;
 };
 template <class P, RobotData R, class Sensors, class Blocks>
 struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_model>
@@ -151,7 +174,7 @@ template <class P, class Sensor>
     const JointData& joint = Robot::kJoints[i];
     const bool moves_frame = P::kKind == ParameterKind::frame_offset;
     const auto moved = moves_frame ? joint.name : drive_of(Robot::kJoints, joint).joint;
-    if (moved == P::kOwner) return true;
+    if (moved == P::kOwner || joint.name == P::kOwner) return true;
   }
   return false;
 }

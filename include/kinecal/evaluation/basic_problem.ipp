@@ -27,9 +27,9 @@ void BasicProblem<S>::add_built_in(const std::string& name, const BuiltInBlock& 
 
 template <class S>
 void BasicProblem<S>::set_walks(const std::vector<detail::CompiledWalk<S>>& walks) {
-  for (const RuntimeChain& chain : sensors().back().chains()) {  // in the order of the chains
-    const auto walk =
-        std::find_if(walks.begin(), walks.end(), [&](const auto& w) { return w.tip == chain.tip; });
+  for (const SampledChain& chain : sensors().back().chains()) {  // in the order of the chains
+    const auto walk = std::find_if(walks.begin(), walks.end(),
+                                   [&](const auto& w) { return w.tip == chain.chain().tip; });
     if (walk == walks.end()) return;
     evaluations_.back().walks.push_back(*walk);
   }

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "kinecal/evaluation/predict.hpp"
-#include "kinecal/kinematics/forward_kinematics.hpp"
 
 namespace kinecal {
 
@@ -14,11 +13,8 @@ namespace detail {
 /// The pose in the base of the tip of a sensor's chain to a frame.
 [[nodiscard]] inline Pose<double> tip_pose(const MountedSensor& sensor, std::size_t chain,
                                            const Sample& sample, ParameterValues values) {
-  const auto position_of = [&](const std::string& joint) {
-    return sample.position(joint).value_or(0.0);  // of a joint that the sample needs, it is there
-  };
-  return forward_kinematics(sensor.chains()[chain], position_of,
-                            corrections_for<double>(sensor.chain_parameters()[chain], values));
+  const SampledChain& way = sensor.chains()[chain];
+  return way.tip(sample, corrections_for<double>(way.parameters(), values));
 }
 
 /// The pixel at which a camera should see a feature of another sensor.

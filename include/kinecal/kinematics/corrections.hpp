@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kinecal/kinematics/chain.hpp"
-#include "kinecal/kinematics/joint_model.hpp"
+#include "kinecal/kinematics/joint_state.hpp"
 #include "kinecal/kinematics/static_chain.hpp"
 
 namespace kinecal {
@@ -20,8 +20,7 @@ struct JointCorrection {
   JointState<S> offset;                               ///< added to the measured position
   Pose<S> frame;                                      ///< between the joint's origin and its motion
   Matrix3<S> left_jacobian = Matrix3<S>::Identity();  ///< of the frame's rotation vector
-  bool has_model = false;                             ///< the joint has parameters of joint models
-  OfJointModels<S> model{};                           ///< their values
+  std::vector<S> model;  ///< values of the parameters of its joint models; empty: it has none
 
   /// Sets the frame correction.
   /// @param translation      (3) metres, in the joint's frame
@@ -45,6 +44,20 @@ template <StaticChain C>
 [[nodiscard]] constexpr const auto& joints_of(const C&) {
   return C::kJoints;
 }
+
+/// The measured motions of a chain's joints in one sample, with what their joint models need.
+struct ModelledMotions {
+  std::vector<JointState<double>> measured;  ///< of each joint
+  /// Of each joint: by how much a unit of each parameter of its models moves it, radians or metres.
+  std::vector<std::vector<double>> all_effects;
+
+  /// The measured motion of a joint.
+  [[nodiscard]] const JointState<double>& operator[](std::size_t joint) const {
+    return measured[joint];
+  }
+  /// The effects of the parameters of its models.
+  [[nodiscard]] const double* effects(std::size_t joint) const { return all_effects[joint].data(); }
+};
 
 /// The measured motion of each joint of a chain in one sample.
 /// @param chain        a RuntimeChain or a Chain

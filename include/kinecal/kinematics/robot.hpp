@@ -18,6 +18,19 @@ struct RobotError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+/// The mass of a link.
+struct LinkMass {
+  double mass = 0.0;                                 ///< kg
+  Vector3<double> center = Vector3<double>::Zero();  ///< (3) of mass, metres, in the link
+};
+
+/// What gravity does to a robot.
+struct RobotWeight {
+  std::map<std::string, LinkMass> links;        ///< masses by link; empty: unknown
+  Vector3<double> gravity{0.0, 0.0, -9.80665};  ///< (3) m/s^2, in the root link
+  std::string payload;  ///< link that carries the condition `payload` of a sample, kg; empty: none
+};
+
 /// A robot: its joints, indexed by name.
 class Robot {
  public:
@@ -30,6 +43,11 @@ class Robot {
 
   [[nodiscard]] const std::string& name() const { return name_; }             ///< of the robot
   [[nodiscard]] const std::vector<Joint>& joints() const { return joints_; }  ///< in given order
+
+  /// Masses of the links, and gravity.
+  [[nodiscard]] const RobotWeight& weight() const { return weight_; }
+  /// @throws RobotError  if a mass or the payload is of a link that does not exist, or not a number
+  void set_weight(RobotWeight weight);
 
   /// True if the robot has a joint of this name.
   [[nodiscard]] bool has_joint(const std::string& name) const { return by_name_.contains(name); }
@@ -57,6 +75,7 @@ class Robot {
 
   std::string name_;
   std::vector<Joint> joints_;
+  RobotWeight weight_;
   std::map<std::string, std::size_t> by_name_;
   std::map<std::string, int> links_;  ///< link -> index of its parent joint, -1 for the root
 };

@@ -45,6 +45,22 @@ KINECAL_INLINE Robot::Robot(std::string name, std::vector<Joint> joints)
   for (const Joint& joint : joints_) check_mimic(joint);
 }
 
+KINECAL_INLINE void Robot::set_weight(RobotWeight weight) {
+  const auto check = [&](const std::string& link, bool is_number) {
+    if (!has_link(link)) {
+      throw RobotError("no link '" + link + "' in robot '" + name_ + "', whose weight is given" +
+                       did_you_mean(link, link_names()));
+    }
+    if (!is_number) throw RobotError("the mass of link '" + link + "' is not a number from 0");
+  };
+  for (const auto& [link, of] : weight.links) {
+    check(link, of.mass >= 0.0 && std::isfinite(of.mass) && of.center.allFinite());
+  }
+  if (!weight.payload.empty()) check(weight.payload, true);
+  if (!weight.gravity.allFinite()) throw RobotError("gravity is not a number");
+  weight_ = std::move(weight);
+}
+
 KINECAL_INLINE const Joint& Robot::joint(const std::string& name) const {
   const auto it = by_name_.find(name);
   if (it == by_name_.end()) {

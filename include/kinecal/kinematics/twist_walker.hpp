@@ -13,7 +13,7 @@
 //   rotation k       angular = R J e_k                 linear = o' x angular,  o' = o + R t
 //   turning joint    angular = R a                     linear = o x angular
 //   sliding joint    linear = R a                      angular = 0
-//   joint model      the twist of its joint times the derivative of the model (joint_model.hpp)
+//   joint model      the twist of its joint times the effect of the parameter
 //
 // A joint passed from child to parent moves what follows the other way: the same formulas at the
 // frame after the joint, negated.
@@ -22,6 +22,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
@@ -32,30 +33,25 @@
 
 namespace kinecal {
 
-/// Indices of a joint's parameters, in a parameter table or among the columns of a Jacobian; -1 for
-/// a parameter that is absent.
-struct JointIndices {
+/// Indices of a joint's offset and frame, in a parameter table or among the columns of a Jacobian;
+/// -1 for a parameter that is absent.
+struct OffsetAndFrame {
   int offset = -1;    ///< of the offset
   double gain = 1.0;  ///< of the offset: the multiplier of a mimic joint
   std::array<int, 6> frame = {-1, -1, -1, -1, -1, -1};  ///< of the frame correction: x y z a b c
-  /// Of the joint models.
-  OfJointModels<int> model = [] {
-    OfJointModels<int> none{};
-    for (int& index : none) index = -1;
-    return none;
-  }();
 
-  bool operator==(const JointIndices&) const = default;  ///< all members are equal
+  bool operator==(const OffsetAndFrame&) const = default;  ///< all members are equal
+};
+/// Indices of all parameters of a joint.
+struct JointIndices : OffsetAndFrame {
+  std::vector<int> model;  ///< of its joint models, in the order of its effects
 };
 
-/// True if some joint has parameters of joint models.
-[[nodiscard]] constexpr bool have_models(std::span<const JointIndices> joints) {
-  for (const JointIndices& joint : joints) {
-    for (const int index : joint.model) {
-      if (index >= 0) return true;
-    }
-  }
-  return false;
+/// The largest number of parameters of joint models that a joint of a chain has.
+[[nodiscard]] inline std::size_t most_effects(std::span<const JointIndices> joints) {
+  std::size_t most = 0;
+  for (const JointIndices& joint : joints) most = std::max(most, joint.model.size());
+  return most;
 }
 
 /// How one parameter moves all points after its joint; in the base, per unit of the parameter.
@@ -179,21 +175,14 @@ struct TwistWalker {
   }
 
   /// Adds a twist for each free parameter of a joint's models, after move().
-  template <class I, class Joint, class M, class U>
-  void move_by_model(I i, const Joint& joint, const JointState<M>& measured,
-                     const JointCorrection<U>& correction) {
-    bool is_free = false;
-    for (const int column : columns[i].model) is_free |= column >= 0;
-    if (!is_free) return;
-    OfJointModels<S> values;
-    for (std::size_t k = 0; k < kJointModelSize; ++k) values[k] = S(correction.model[k]);
-    const OfJointModels<S> derivatives =
-        joint_model_derivatives(S(driving_position(joint.drive, measured.position)), values);
+  /// @param effects  of the parameters: radians or metres per unit
+  template <class I, class Joint, class E>
+  void move_by_model(I i, const Joint& joint,
+                     const E* effects) requires(requires { columns[i].model; }) {
     const Vector3<S> axis = walker.axis(joint);
-    const double multiplier = joint.reversed ? -joint.drive.multiplier : joint.drive.multiplier;
-    for (std::size_t k = 0; k < kJointModelSize; ++k) {
+    for (std::size_t k = 0; k < columns[i].model.size(); ++k) {
       if (columns[i].model[k] < 0) continue;
-      const S factor = derivatives[k] * S(multiplier);
+      const S factor = joint.reversed ? S(-effects[k]) : S(effects[k]);
       const Vector3<S> scaled(axis.x() * factor, axis.y() * factor, axis.z() * factor);
       if (turns(joint.type)) {
         add_turn(walker.pose.translation, scaled);

@@ -62,10 +62,16 @@ template <StaticChain C>
 }
 
 /// The state of a joint that has models.  Not inline: few joints have them.
-template <class Drive, class S, class U>
-[[nodiscard, gnu::noinline]] auto modelled(const Drive& drive, const JointState<S>& measured,
+/// @param effects  of the parameters of its models
+template <class S, class E, class U>
+[[nodiscard, gnu::noinline]] auto modelled(const JointState<S>& measured, const E* effects,
                                            const JointCorrection<U>& correction) {
-  return modelled_state(drive, measured, correction.offset, correction.model);
+  using R = Product<S, U>;
+  R change(0.0);
+  for (std::size_t k = 0; k < correction.model.size(); ++k) {
+    change += R(correction.model[k] * effects[k]);
+  }
+  return measured + correction.offset + make_joint_state(change);
 }
 
 }  // namespace detail
@@ -101,15 +107,16 @@ void walk_on(const Chain& chain, std::size_t first, const Motions& motions,
     }
     if (moves(joint.type)) {
       auto state = motions[i] + corrections[i].offset;
-      if constexpr (kModels) {
-        if (corrections[i].has_model) {
-          state = detail::modelled(joint.drive, motions[i], corrections[i]);
+      if constexpr (kModels && requires { motions.effects(i); }) {
+        if (!corrections[i].model.empty()) {
+          state = detail::modelled(motions[i], motions.effects(i), corrections[i]);
         }
-      }
-      walker.move(i, joint, state);
-      if constexpr (kModels &&
-                    requires { walker.move_by_model(i, joint, motions[i], corrections[i]); }) {
-        walker.move_by_model(i, joint, motions[i], corrections[i]);
+        walker.move(i, joint, state);
+        if constexpr (requires { walker.move_by_model(i, joint, motions.effects(i)); }) {
+          walker.move_by_model(i, joint, motions.effects(i));
+        }
+      } else {
+        walker.move(i, joint, state);
       }
     }
     if (joint.corrected && joint.reversed) walker.correct(i, joint, corrections[i]);
@@ -120,7 +127,8 @@ void walk_on(const Chain& chain, std::size_t first, const Motions& motions,
 
 /// Walks a chain from base to tip.
 /// @param chain        a RuntimeChain or a Chain
-/// @param motions      JointState of each joint of the chain (any scalar), by index
+/// @param motions      JointState of each joint of the chain (any scalar), by index; only if it
+///                     has effects (see ModelledMotions), joint models count
 /// @param corrections  JointCorrection of each joint of the chain (any scalar), by index
 template <class Chain, class Motions, class Corrected, class W>
 void walk(const Chain& chain, const Motions& motions, const Corrected& corrections, W& walker) {

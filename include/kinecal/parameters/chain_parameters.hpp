@@ -10,18 +10,15 @@
 
 namespace kinecal {
 
-/// The indices of the parameters of a joint in a chain.  A mimic joint uses the offset of the joint
+/// The indices of the offset and frame of a joint in a chain.  A mimic joint uses the offset of the joint
 /// that drives it.
 /// @param find  callable (owner, part): index of a parameter, or -1; an offset has an empty part
 template <class Joint, class Find>
-[[nodiscard]] constexpr JointIndices joint_indices(const Joint& joint, const Find& find) {
-  JointIndices indices;
+[[nodiscard]] constexpr OffsetAndFrame joint_indices(const Joint& joint, const Find& find) {
+  OffsetAndFrame indices;
   if (moves(joint.type)) {
     indices.offset = find(joint.drive.joint, "");
     indices.gain = joint.drive.multiplier;
-    for (std::size_t k = 0; k < kJointModelSize; ++k) {
-      indices.model[k] = find(joint.drive.joint, kJointModelNames[k]);
-    }
   }
   for (std::size_t k = 0; k < 6 && joint.corrected; ++k) {
     indices.frame[k] = find(joint.name, kFrameAxes[k]);
@@ -29,14 +26,16 @@ template <class Joint, class Find>
   return indices;
 }
 
-/// Table indices of the parameters of each joint of a chain.
+/// Table indices of the offset and frame of each joint of a chain.  SampledChain also knows its joint
+/// models.
 [[nodiscard]] inline std::vector<JointIndices> chain_parameters(const RuntimeChain& chain,
                                                                 const ParameterTable& table) {
   std::vector<JointIndices> indices;
   for (const ChainJoint& joint : chain.joints) {
-    indices.push_back(joint_indices(joint, [&](std::string_view owner, std::string_view part) {
+    const auto find = [&](std::string_view owner, std::string_view part) {
       return table.find(part.empty() ? std::string(owner) : parameter_name(owner, part));
-    }));
+    };
+    indices.push_back({joint_indices(joint, find), {}});
   }
   return indices;
 }
@@ -65,9 +64,8 @@ void set_corrections(const std::vector<JointIndices>& indices, std::span<const S
     const JointIndices& joint = indices[j];
     if (joint.offset >= 0)
       corrections[j].offset = make_joint_state(S(value(joint.offset) * joint.gain));
-    for (std::size_t k = 0; k < kJointModelSize; ++k) {
-      if (joint.model[k] < 0) continue;
-      corrections[j].has_model = true;
+    corrections[j].model.resize(joint.model.size());
+    for (std::size_t k = 0; k < joint.model.size(); ++k) {
       corrections[j].model[k] = value(joint.model[k]);
     }
     bool corrected = false;

@@ -8,6 +8,7 @@
 //   DepthCorrection<"camera">                 two: z_offset z_scaling
 //   DepthIntrinsics<"camera">                 all six of a depth camera
 //   JointModelParameters<"elbow", "gear_ratio">   what a joint model declares
+//   OwnJointModel<"elbow", Worm>              all that a joint model of your own declares
 //   SensorParameters<"wire", "scale">         what a sensor declares
 //   BlockParameters<"sphere", "radius">       what an error block declares
 //
@@ -89,6 +90,17 @@ namespace detail {
 template <FixedString Owner, FixedString Part>
 inline constexpr ParameterId kId = {Owner, Part, kView<Owner + FixedString("_") + Part>};
 
+/// The name of a parameter of a joint model, with a zero at its end.
+template <FixedString Joint, class M, std::size_t I>
+inline constexpr auto kNameOfModel = [] {
+  constexpr std::string_view kJoint = Joint, kPart = M::kParameters[I].name;
+  std::array<char, kJoint.size() + kPart.size() + 2> name{};
+  auto end = std::copy(kJoint.begin(), kJoint.end(), name.begin());
+  *end++ = '_';
+  std::copy(kPart.begin(), kPart.end(), end);
+  return name;
+}();
+
 /// Some of a frame's six numbers.
 template <FixedString F, Axes Chosen>
 inline constexpr auto kFrameIds = [] {
@@ -136,10 +148,22 @@ struct OwnedParameters {
 
 // Distinct types, not aliases: compilers print these names.
 
-/// Parameters of joint models (kinematics/joint_model.hpp): "gear_ratio", "eccentric_sin",
-/// "eccentric_cos".
+/// Parameters of joint models (parameters/joint_model.hpp): "gear_ratio", "eccentric_sin",
+/// "coupling_shoulder".
 template <FixedString Joint, FixedString... Parts>
 struct JointModelParameters : OwnedParameters<ParameterKind::joint_model, Joint, Parts...> {};
+/// All parameters of a joint model of your own: OwnJointModel<"elbow", Worm>.
+template <FixedString Joint, class M>
+struct OwnJointModel {
+  using Model = M;                                                    ///< the joint model
+  static constexpr ParameterKind kKind = ParameterKind::joint_model;  ///< what it corrects
+  static constexpr std::string_view kOwner = Joint;                   ///< name of the joint
+  static constexpr auto kIds = []<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array{
+        ParameterId(Joint, M::kParameters[I].name, detail::kNameOfModel<Joint, M, I>.data())...};
+  }
+  (std::make_index_sequence<M::kParameters.size()>());  ///< its numbers
+};
 /// Parameters that a sensor declares.
 template <FixedString Sensor, FixedString... Parts>
 struct SensorParameters : OwnedParameters<ParameterKind::sensor, Sensor, Parts...> {};
@@ -221,12 +245,12 @@ struct FreeParameters {
   static constexpr int kSlot = find(P::kIds[0].owner, P::kIds[0].part);
 };
 
-/// The slots of each joint's parameters in a chain: chain_parameters() at compile time.
+/// The slots of each joint's offset and frame in a chain: chain_parameters() at compile time.
 /// @tparam C  a Chain
 /// @tparam F  a FreeParameters
 template <StaticChain C, class F>
-inline constexpr std::array<JointIndices, C::kSize> kColumnsOf = [] {
-  std::array<JointIndices, C::kSize> columns{};
+inline constexpr std::array<OffsetAndFrame, C::kSize> kColumnsOf = [] {
+  std::array<OffsetAndFrame, C::kSize> columns{};
   for (std::size_t i = 0; i < C::kSize; ++i) {
     columns[i] = joint_indices(C::kJoints[i], [](std::string_view owner, std::string_view part) {
       return F::find(owner, part);

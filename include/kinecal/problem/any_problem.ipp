@@ -56,6 +56,7 @@ KINECAL_INLINE void AnyProblem::mount(std::shared_ptr<const AnySensor> sensor, c
   for (const int parameter : sensors_.back().parameters()) {
     set_owner(parameter, mount.parameter_prefix());
   }
+  set_owner(sensors_.back().lag(), mount.parameter_prefix());
 }
 
 KINECAL_INLINE void AnyProblem::check_no_samples() const {

@@ -25,15 +25,23 @@ namespace kinecal::detail {
 /// @tparam kModels  some joint of the chain has parameters of joint models
 template <class S, bool kModels>
 struct JointStates {
-  /// Of each joint: position, cosine, sine; without models only cosine and sine if it rotates, else
-  /// position and an unused number.
+  /// Of each joint: cosine and sine if it rotates, else position and an unused number; with models,
+  /// then the effects of their parameters.
   const S* numbers;
+  std::size_t num_effects = 0;  ///< of each joint
 
-  /// The state of a joint; without models, position is valid only for a sliding joint.
+  /// The state of a joint; position is valid only for a sliding joint.
   [[nodiscard]] JointState<S> operator[](std::size_t joint) const {
-    const S* of_joint = numbers + (kModels ? 3 : 2) * joint;
-    return {of_joint[0], of_joint[kModels ? 1 : 0], of_joint[kModels ? 2 : 1]};
+    const S* of_joint = numbers + stride() * joint;
+    return {of_joint[0], of_joint[0], of_joint[1]};
   }
+  /// The effects of the parameters of a joint's models.
+  [[nodiscard]] const S* effects(std::size_t joint) const requires kModels {
+    return numbers + stride() * joint + 2;
+  }
+
+ private:
+  [[nodiscard]] std::size_t stride() const { return kModels ? 2 + num_effects : 2; }
 };
 
 /// What one sensor observed in the samples of a batch.

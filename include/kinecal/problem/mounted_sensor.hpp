@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "kinecal/linkage.hpp"
-#include "kinecal/parameters/chain_parameters.hpp"
+#include "kinecal/problem/sampled_chain.hpp"
 #include "kinecal/sensors/any_sensor.hpp"
 
 namespace kinecal {
@@ -49,11 +49,10 @@ class MountedSensor {
   /// The sensor itself.
   [[nodiscard]] const AnySensor& sensor() const { return *sensor_; }
   /// The chain to the sensor's frame, then those to virtual frames.
-  [[nodiscard]] const std::vector<RuntimeChain>& chains() const { return chains_; }
-  /// Table indices of each chain's parameters.
-  [[nodiscard]] const std::vector<std::vector<JointIndices>>& chain_parameters() const {
-    return chain_parameters_;
-  }
+  [[nodiscard]] const std::vector<SampledChain>& chains() const { return chains_; }
+  /// Table index of the sensor's lag behind the positions of the joints, seconds: its name is "lag"
+  /// after the prefix; -1 if the table does not have it.
+  [[nodiscard]] int lag() const { return lag_; }
   /// Table indices of the sensor's own parameters; -1 if the table does not have them.
   [[nodiscard]] const std::vector<int>& parameters() const { return parameters_; }
 
@@ -67,7 +66,7 @@ class MountedSensor {
                                                    const Observation& seen) const;
 
  private:
-  void add_chain(const RuntimeChain& chain, const ParameterTable& table);
+  void add_chain(const Robot& robot, const RuntimeChain& chain, const ParameterTable& table);
   void add_feature(const Feature& feature, detail::ObservationNumbers& all) const;
   void add_sigmas(const Observation& seen, detail::ObservationNumbers& all) const;
   [[nodiscard]] std::size_t chain_to(const std::string& frame) const;
@@ -77,9 +76,9 @@ class MountedSensor {
   Mount mount_;
   std::shared_ptr<const AnySensor> sensor_;
   std::vector<int> parameters_;
-  std::vector<RuntimeChain>
+  int lag_ = -1;
+  std::vector<SampledChain>
       chains_;  ///< [0] ends at the sensor's frame, the others at virtual frames
-  std::vector<std::vector<JointIndices>> chain_parameters_;
   std::map<std::string, std::size_t> chain_by_frame_;
 };
 

@@ -34,12 +34,14 @@ KINECAL_INLINE MountedSensor::MountedSensor(const Robot& robot, const std::strin
     : mount_(std::move(mount)), sensor_(std::move(sensor)) {
   const RuntimeChain chain = make_chain(robot, base, mount_.frame, frames);
   mount_.frame = chain.tip;  // as the robot spells it
-  add_chain(chain, table);
-  for (const std::string& frame : frames) {
-    if (!robot.has_joint(frame)) add_chain(with_virtual_frame(chain, frame), table);
-  }
+  lag_ = table.find(parameter_name(mount_.parameter_prefix(), kLag.name));
   for (const ParameterInfo& info : sensor_->parameters()) {
     parameters_.push_back(table.find(parameter_name(mount_.parameter_prefix(), info.name)));
+    if (parameters_.back() == lag_) lag_ = -1;  // it has one of its own
+  }
+  add_chain(robot, chain, table);
+  for (const std::string& frame : frames) {
+    if (!robot.has_joint(frame)) add_chain(robot, with_virtual_frame(chain, frame), table);
   }
 }
 
@@ -69,11 +71,10 @@ KINECAL_INLINE detail::ObservationNumbers MountedSensor::numbers(const Sample& s
   return all;
 }
 
-KINECAL_INLINE void MountedSensor::add_chain(const RuntimeChain& chain,
+KINECAL_INLINE void MountedSensor::add_chain(const Robot& robot, const RuntimeChain& chain,
                                              const ParameterTable& table) {
   chain_by_frame_.emplace(plain_frame(chain.tip), chains_.size());
-  chains_.push_back(chain);
-  chain_parameters_.push_back(kinecal::chain_parameters(chain, table));
+  chains_.emplace_back(robot, chain, table, lag_);
 }
 
 KINECAL_INLINE void MountedSensor::add_feature(const Feature& feature,
@@ -133,25 +134,22 @@ KINECAL_INLINE std::size_t MountedSensor::chain_to(const std::string& frame) con
 
 KINECAL_INLINE std::vector<double> MountedSensor::joints(const Sample& sample,
                                                          std::size_t c) const {
-  const RuntimeChain& chain = chains_[c];
-  const bool models = have_models(chain_parameters_[c]);
-  const auto states = measured_joint_states(chain, [&](const std::string& joint) {
-    const std::optional<double> position = sample.position(joint);
-    if (!position) {
-      throw SampleError("joint '" + joint + "' is not in the sample; sensor '" + mount_.name +
-                        "' needs it" + did_you_mean(joint, sample.joint_names));
-    }
-    if (!std::isfinite(*position)) {
-      throw SampleError("the position of joint '" + joint + "' is not a number");
-    }
-    return *position;
-  });
+  const SampledChain& chain = chains_[c];
+  const std::size_t effects = most_effects(chain.parameters());
+  for (const ChainJoint& joint : chain.chain().joints) {
+    const std::string& name = joint.drive.joint;
+    if (!moves(joint.type) || sample.position(name)) continue;
+    throw SampleError("joint '" + name + "' is not in the sample; sensor '" + mount_.name +
+                      "' needs it" + did_you_mean(name, sample.joint_names));
+  }
+  const ModelledMotions motions = chain.motions(sample);
   std::vector<double> numbers;
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    const JointState<double>& state = states[i];
-    if (models) numbers.push_back(state.position);
-    numbers.push_back(models || turns(chain.joints[i].type) ? state.cos : state.position);
+  for (std::size_t i = 0; i < motions.measured.size(); ++i) {
+    const JointState<double>& state = motions[i];
+    numbers.push_back(turns(chain.chain().joints[i].type) ? state.cos : state.position);
     numbers.push_back(state.sin);
+    numbers.insert(numbers.end(), motions.all_effects[i].begin(), motions.all_effects[i].end());
+    numbers.insert(numbers.end(), effects - motions.all_effects[i].size(), 0.0);
   }
   return numbers;
 }

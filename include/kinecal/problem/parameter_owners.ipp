@@ -19,9 +19,10 @@ KINECAL_INLINE void AnyProblem::set_owners() {
   for (const Joint& joint : robot_.joints()) {
     if (!moves(joint.type)) continue;
     set_owner(table_.find(joint.name), joint.name);
-    for (const std::string_view part : kJointModelNames) {
-      set_owner(table_.find(parameter_name(joint.name, part)), joint.name);
-    }
+  }
+  for (int p = 0; p < table_.size(); ++p) {
+    const auto of = joint_model_parameter(robot_, table_[p].name);
+    if (of && of->fault.empty()) set_owner(p, of->joint);
   }
   for (const std::string& frame : frames_) {
     for (const std::string_view axis : kFrameAxes) {
@@ -102,7 +103,7 @@ inline void add_touched(const MountedSensor& sensor, const std::vector<std::size
                         std::set<int>& touched) {
   touched.insert(sensor.parameters().begin(), sensor.parameters().end());
   for (const std::size_t c : chains) {
-    for (const JointIndices& joint : sensor.chain_parameters()[c]) {
+    for (const JointIndices& joint : sensor.chains()[c].parameters()) {
       touched.insert(joint.offset);
       touched.insert(joint.model.begin(), joint.model.end());
       touched.insert(joint.frame.begin(), joint.frame.end());

@@ -12,7 +12,7 @@ RecordedPoses recorded_poses(const Calibration& calibration, std::span<const Sam
   for (const CalibrationStep& step : calibration.steps) {
     for (const MountedSensor& sensor : step.problem->sensors()) {
       for (const auto& chain : sensor.chains()) {
-        for (const ChainJoint& joint : chain.joints) {
+        for (const ChainJoint& joint : chain.chain().joints) {
           if (moves(joint.type)) joints.insert(joint.drive.joint);
         }
       }

@@ -125,16 +125,13 @@ Pose<double> child_in_parent(const SceneJoint& joint, std::span<const double> q,
   Pose<double> pose = joint.origin;
   const std::optional<SceneCorrection>& correction = corrected ? joint.after : joint.before;
   if (correction) {
-    const auto& [t, r, offset, model] = *correction;
+    const auto& [t, r, offset] = *correction;
     pose = pose * Pose<double>{exp(Vector3<double>(r[0], r[1], r[2])), {t[0], t[1], t[2]}};
   }
   if (!moves(joint.type) || joint.drive < 0) return pose;
   const double measured = q[static_cast<std::size_t>(joint.drive)];
   double position = joint.multiplier * measured + joint.offset;
-  if (correction) {
-    position +=
-        correction->offset + joint.multiplier * joint_model_change(measured, correction->model);
-  }
+  if (correction) position += correction->offset;
   const Vector3<double> axis(joint.axis[0], joint.axis[1], joint.axis[2]);
   const Vector3<double> along = axis * position;
   return pose * (turns(joint.type) ? Pose<double>{exp(along), Vector3<double>::Zero()}

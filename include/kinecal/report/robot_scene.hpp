@@ -15,7 +15,7 @@
 
 #include "kinecal/files/meshes/mesh.hpp"
 #include "kinecal/files/urdf/visuals.hpp"
-#include "kinecal/kinematics/joint_model.hpp"
+#include "kinecal/kinematics/joint.hpp"
 #include "kinecal/report/findings.hpp"
 
 namespace kinecal {
@@ -37,10 +37,9 @@ struct SceneLink {
 
 /// The calibration of a joint.
 struct SceneCorrection {
-  std::array<double, 3> t{};         ///< translation, metres, in the joint's frame
-  std::array<double, 3> r{};         ///< rotation vector, radians
-  double offset = 0.0;               ///< of the joint's position, radians or metres
-  OfJointModels<double> model = {};  ///< parameters of joint models of the joint that drives it
+  std::array<double, 3> t{};  ///< translation, metres, in the joint's frame
+  std::array<double, 3> r{};  ///< rotation vector, radians
+  double offset = 0.0;        ///< of the joint's position, radians or metres; without joint models
 };
 
 /// A joint, or a frame beyond a link: of a board, a tracker.

@@ -50,13 +50,9 @@ namespace {
 }
 
 [[nodiscard]] Json scene_tree(const SceneCorrection& of) {
-  Json json = {{"t", rounded_list(of.t, kAngleDigits)},
-               {"r", rounded_list(of.r, kAngleDigits)},
-               {"offset", rounded(of.offset, kAngleDigits)}};
-  const bool models =
-      std::any_of(of.model.begin(), of.model.end(), [](double value) { return value != 0.0; });
-  if (models) json["model"] = rounded_list(of.model, kAngleDigits);
-  return json;
+  return {{"t", rounded_list(of.t, kAngleDigits)},
+          {"r", rounded_list(of.r, kAngleDigits)},
+          {"offset", rounded(of.offset, kAngleDigits)}};
 }
 
 [[nodiscard]] Json scene_tree(const ScenePair& pair) {

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/report/scene_pairs.ipp"
 #include "kinecal/text/frame_name.hpp"
@@ -30,8 +29,8 @@ class ScenePoints {
       : problem_(problem), values_(values) {
     for (const MountedSensor& sensor : problem.sensors()) {
       auto& corrections = corrections_.emplace_back();
-      for (const auto& indices : sensor.chain_parameters()) {
-        corrections.push_back(corrections_for(indices, values));
+      for (const SampledChain& chain : sensor.chains()) {
+        corrections.push_back(corrections_for(chain.parameters(), values));
       }
     }
   }
@@ -124,11 +123,7 @@ class ScenePoints {
   }
 
   [[nodiscard]] Pose<double> frame_in_base(int s, std::size_t chain, const Sample& sample) const {
-    const RuntimeChain& way = sensor(s).chains()[chain];
-    const auto position = [&](const std::string& joint) {
-      return sample.position(joint).value_or(0.0);
-    };
-    return forward_kinematics(way, position, corrections_[static_cast<std::size_t>(s)][chain]);
+    return sensor(s).chains()[chain].tip(sample, corrections_[static_cast<std::size_t>(s)][chain]);
   }
 
   /// A measurement in the sensor's frame: a point, or the direction of a line of sight.
@@ -150,7 +145,7 @@ class ScenePoints {
       if (frame == frames.end()) {
         std::size_t chain = 0;
         for (std::size_t c = 1; c < of.chains().size(); ++c) {
-          if (same_frame(of.chains()[c].tip, feature.frame)) chain = c;
+          if (same_frame(of.chains()[c].chain().tip, feature.frame)) chain = c;
         }
         frame = frames.emplace(feature.frame, frame_in_base(s, chain, sample)).first;
       }

@@ -102,7 +102,7 @@ class SceneRobot {
 
   /// Adds the joint with its corrections.
   void add_corrections(const ChainJoint& joint, SceneJoint& shown) {
-    const JointIndices indices =
+    const OffsetAndFrame indices =
         joint_indices(joint, [&](std::string_view owner, std::string_view part) {
           return table_.find(part.empty() ? std::string(owner) : parameter_name(owner, part));
         });
@@ -114,13 +114,12 @@ class SceneRobot {
         of.r[k] = get(indices.frame[k + 3]);
       }
       of.offset = get(indices.offset) * indices.gain;
-      for (std::size_t k = 0; k < kJointModelSize; ++k) of.model[k] = get(indices.model[k]);
       return of;
     };
     const auto has = [](const auto& all) {
       return std::any_of(all.begin(), all.end(), [](int i) { return i >= 0; });
     };
-    if (indices.offset >= 0 || has(indices.frame) || has(indices.model)) {
+    if (indices.offset >= 0 || has(indices.frame)) {
       shown.before = correction(&Parameter::initial);
       shown.after = correction(&Parameter::value);
     }

@@ -80,14 +80,23 @@ struct Sample {
   /// Time at which the joints were measured, since the epoch of the robot's clock; nullopt if
   /// unknown.
   std::optional<std::chrono::nanoseconds> stamp = {};
+  /// Velocities, rad/s or m/s, in the order of the names; empty: not recorded.
+  std::vector<double> joint_velocities = {};
+  /// How far each joint has come from where it stood before, radians or metres; 0 if it has not
+  /// moved yet; empty: unknown.  See set_joint_moves().
+  std::vector<double> joint_moves = {};
 
   /// Measured position of a joint, radians or metres; nullopt if it was not measured.
   [[nodiscard]] std::optional<double> position(const std::string& joint) const {
-    const std::size_t measured = std::min(joint_names.size(), joint_positions.size());
-    for (std::size_t i = 0; i < measured; ++i) {
-      if (joint_names[i] == joint) return joint_positions[i];
-    }
-    return std::nullopt;
+    return of(joint, joint_positions);
+  }
+  /// Measured velocity of a joint, rad/s or m/s; nullopt if it was not measured.
+  [[nodiscard]] std::optional<double> velocity(const std::string& joint) const {
+    return of(joint, joint_velocities);
+  }
+  /// How far a joint has come: see joint_moves; nullopt if unknown.
+  [[nodiscard]] std::optional<double> move(const std::string& joint) const {
+    return of(joint, joint_moves);
   }
 
   /// The observation of a sensor; nullptr if there is none.
@@ -96,6 +105,16 @@ struct Sample {
       if (o.sensor == sensor) return &o;
     }
     return nullptr;
+  }
+
+ private:
+  [[nodiscard]] std::optional<double> of(const std::string& joint,
+                                         const std::vector<double>& numbers) const {
+    const std::size_t measured = std::min(joint_names.size(), numbers.size());
+    for (std::size_t i = 0; i < measured; ++i) {
+      if (joint_names[i] == joint) return numbers[i];
+    }
+    return std::nullopt;
   }
 };
 

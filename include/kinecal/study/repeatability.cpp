@@ -42,8 +42,8 @@ enum class StudySeed : std::uint64_t { truth = 1, poses, noise, judged };
 [[nodiscard]] std::set<std::string> observed_joints(const AnyProblem& problem) {
   std::set<std::string> joints;
   for (const MountedSensor& sensor : problem.sensors()) {
-    for (const RuntimeChain& chain : sensor.chains()) {
-      for (const ChainJoint& joint : chain.joints) {
+    for (const SampledChain& chain : sensor.chains()) {
+      for (const ChainJoint& joint : chain.chain().joints) {
         if (moves(joint.type)) joints.insert(std::string(joint.drive.joint));
       }
     }

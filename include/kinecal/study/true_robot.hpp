@@ -8,14 +8,23 @@
 #include <string>
 #include <utility>
 
-#include "kinecal/kinematics/forward_kinematics.hpp"
-#include "kinecal/parameters/chain_parameters.hpp"
+#include "kinecal/problem/sampled_chain.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
 
 /// Joint positions by name: radians or metres.
 using Positions = std::map<std::string, double>;
+
+/// A sample of these positions, without observations.
+[[nodiscard]] inline Sample sample_at(const Positions& positions) {
+  Sample sample;
+  for (const auto& [joint, position] : positions) {
+    sample.joint_names.push_back(joint);
+    sample.joint_positions.push_back(position);
+  }
+  return sample;
+}
 
 /// The true poses of a robot's links.
 class TrueRobot {
@@ -32,19 +41,20 @@ class TrueRobot {
   /// @param beyond  a virtual frame beyond the link: returns its pose instead
   /// @returns       base_T_tip, metres
   /// @throws RobotError  if there is no chain between the links
-  /// @throws std::out_of_range  if the position of a joint of the chain is missing
+  /// @throws SampleError  if the position of a joint of the chain is missing, or what a joint model
+  ///                      needs beside positions
   [[nodiscard]] Pose<double> pose(const std::string& base, const std::string& tip,
                                   const Positions& positions,
                                   const std::string& beyond = "") const {
-    auto [known, is_new] = ways_.try_emplace({base, tip + "/" + beyond});
-    if (is_new) known->second = way(base, tip, beyond);
+    const std::pair key(base, tip + "/" + beyond);
+    auto known = ways_.find(key);
+    if (known == ways_.end()) known = ways_.emplace(key, way(base, tip, beyond)).first;
     const auto& [chain, corrections] = known->second;
-    const auto position_of = [&](const std::string& joint) { return positions.at(joint); };
-    return forward_kinematics(chain, position_of, corrections);
+    return chain.tip(sample_at(positions), corrections);
   }
 
  private:
-  using Way = std::pair<RuntimeChain, Corrections<double>>;
+  using Way = std::pair<SampledChain, Corrections<double>>;
 
   [[nodiscard]] Way way(const std::string& base, const std::string& tip,
                         const std::string& beyond) const {
@@ -52,8 +62,9 @@ class TrueRobot {
     if (!beyond.empty()) chain = with_virtual_frame(chain, beyond);
     const Eigen::VectorXd values = truth_.values();
     const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
-    Corrections<double> corrections = corrections_for(chain_parameters(chain, truth_), all);
-    return {std::move(chain), std::move(corrections)};
+    SampledChain sampled(robot_, std::move(chain), truth_);
+    Corrections<double> corrections = corrections_for(sampled.parameters(), all);
+    return {std::move(sampled), std::move(corrections)};
   }
 
   Robot robot_;
@@ -75,16 +86,6 @@ class TrueRobot {
     positions[sample.joint_names[i]] = sample.joint_positions[i];
   }
   return TrueRobot(robot, truth, joints).pose(base, tip, positions);
-}
-
-/// A sample of these positions, without observations.
-[[nodiscard]] inline Sample sample_at(const Positions& positions) {
-  Sample sample;
-  for (const auto& [joint, position] : positions) {
-    sample.joint_names.push_back(joint);
-    sample.joint_positions.push_back(position);
-  }
-  return sample;
 }
 
 }  // namespace kinecal

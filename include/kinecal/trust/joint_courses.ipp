@@ -42,9 +42,9 @@ struct JointTrack {
     const AnyProblem& problem, std::span<const Sample> samples) {
   std::map<std::string, JointTrack> tracks;
   for (const MountedSensor& sensor : problem.sensors()) {
-    for (const RuntimeChain& chain : sensor.chains()) {
+    for (const SampledChain& chain : sensor.chains()) {
       std::map<std::string, JointTrack> of_chain;
-      for (const ChainJoint& joint : chain.joints) {
+      for (const ChainJoint& joint : chain.chain().joints) {
         const std::string& name = joint.drive.joint;
         if (joint.type == JointType::fixed || tracks.contains(name)) continue;
         if (!problem.robot().has_joint(name)) continue;
@@ -52,12 +52,12 @@ struct JointTrack {
       }
       if (of_chain.empty()) continue;
       for (const Sample& sample : samples) {
-        const Eigen::VectorXd raises = raises_of(chain, sample);
+        const Eigen::VectorXd raises = raises_of(chain.chain(), sample);
         for (auto& [name, track] : of_chain) {
           track.at.push_back(sample.position(name).value_or(std::nan("")));
           double sum = 0.0;
           for (Eigen::Index i = 0; i < raises.size(); ++i) {
-            const ChainJoint& joint = chain.joints[static_cast<std::size_t>(i)];
+            const ChainJoint& joint = chain.chain().joints[static_cast<std::size_t>(i)];
             if (joint.drive.joint == name && moves(joint.type)) sum += raises(i);
           }
           track.raises.push_back(sum);

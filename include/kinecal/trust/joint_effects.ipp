@@ -17,8 +17,8 @@ namespace kinecal::detail {
   constexpr double kRadians = 1e-3, kMetres = 2e-4;
   std::map<std::string, double> joints;
   for (const MountedSensor& sensor : problem.sensors()) {
-    for (const RuntimeChain& chain : sensor.chains()) {
-      for (const ChainJoint& joint : chain.joints) {
+    for (const SampledChain& chain : sensor.chains()) {
+      for (const ChainJoint& joint : chain.chain().joints) {
         if (joint.type == JointType::fixed) continue;
         joints[joint.drive.joint] = turns(joint.type) ? kRadians : kMetres;
       }

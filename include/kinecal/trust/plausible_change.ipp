@@ -24,9 +24,9 @@ struct Limits {
 [[nodiscard]] inline double robot_size(const AnyProblem& problem) {
   double longest = 0.0;
   for (const MountedSensor& sensor : problem.sensors()) {
-    for (const RuntimeChain& chain : sensor.chains()) {
-      double length = chain.tail.translation.norm();
-      for (const ChainJoint& joint : chain.joints) length += joint.fixed.translation.norm();
+    for (const SampledChain& chain : sensor.chains()) {
+      double length = chain.chain().tail.translation.norm();
+      for (const ChainJoint& joint : chain.chain().joints) length += joint.fixed.translation.norm();
       longest = std::max(longest, length);
     }
   }

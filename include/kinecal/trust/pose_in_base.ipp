@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <utility>
 
 #include "kinecal/trust/pose_uncertainty.hpp"
@@ -13,27 +12,20 @@ namespace kinecal::detail {
 class PoseInBase {
  public:
   PoseInBase(const RobotState& robot, const FrameOnRobot& frame)
-      : chain_(make_chain(robot.problem.robot(), robot.problem.base(), frame.link,
-                          robot.problem.frames())) {
-    if (!frame.frame.empty()) chain_ = with_virtual_frame(std::move(chain_), frame.frame);
-    corrections_ = corrections_for(chain_parameters(chain_, robot.problem.table()), robot.values);
-  }
-  [[nodiscard]] bool has_joints(const Sample& sample) const {
-    return std::all_of(chain_.joints.begin(), chain_.joints.end(), [&](const ChainJoint& joint) {
-      return !moves(joint.type) || sample.position(joint.drive.joint);
-    });
-  }
+      : chain_(robot.problem.robot(), chain_to(robot.problem, frame), robot.problem.table()),
+        corrections_(corrections_for(chain_.parameters(), robot.values)) {}
+  [[nodiscard]] bool has_joints(const Sample& sample) const { return chain_.has_joints(sample); }
   [[nodiscard]] Pose<double> at(const Sample& sample) const {
-    PoseWalker<double> walker;
-    walk(chain_,
-         measured_joint_states(chain_,
-                               [&](const std::string& joint) { return *sample.position(joint); }),
-         corrections_, walker);
-    return walker.pose;
+    return chain_.tip(sample, corrections_);
   }
 
  private:
-  RuntimeChain chain_;
+  [[nodiscard]] static RuntimeChain chain_to(const AnyProblem& problem, const FrameOnRobot& frame) {
+    RuntimeChain chain = make_chain(problem.robot(), problem.base(), frame.link, problem.frames());
+    return frame.frame.empty() ? chain : with_virtual_frame(std::move(chain), frame.frame);
+  }
+
+  SampledChain chain_;
   Corrections<double> corrections_;
 };
 

@@ -17,31 +17,24 @@ class TipDerivative {
  public:
   TipDerivative(const AnyProblem& problem, const FreeSet& free, ParameterValues values,
                 RuntimeChain chain)
-      : chain_(std::move(chain)),
-        parameters_(chain_parameters(chain_, problem.table())),
-        columns_(columns_of(parameters_, free)),
-        twist_columns_(twist_columns(chain_, columns_)),
-        corrections_(corrections_for(parameters_, values)),
+      : chain_(problem.robot(), std::move(chain), problem.table()),
+        columns_(columns_of(chain_.parameters(), free)),
+        twist_columns_(twist_columns(chain_.chain(), columns_)),
+        corrections_(corrections_for(chain_.parameters(), values)),
         free_(free.size()) {
     twist_columns_.resize(twists_);
   }
 
   /// True if a sample has all joints of the chain.
-  [[nodiscard]] bool has_joints(const Sample& sample) const {
-    return std::all_of(chain_.joints.begin(), chain_.joints.end(), [&](const ChainJoint& joint) {
-      return !moves(joint.type) || sample.position(joint.drive.joint);
-    });
-  }
+  [[nodiscard]] bool has_joints(const Sample& sample) const { return chain_.has_joints(sample); }
   /// The tip's origin at the pose of a sample, in the chain's base.
   [[nodiscard]] Vector3<double> tip(const Sample& sample) const {
-    PoseWalker<double> walker;
-    walk(chain_, states(sample), corrections_, walker);
-    return walker.pose.translation;
+    return chain_.tip(sample, corrections_).translation;
   }
   /// (6 x free) velocity of a point that moves with the tip, then rotation, in the chain's base.
   [[nodiscard]] Eigen::MatrixXd at(const Sample& sample, const Vector3<double>& p_base) {
     TwistWalker<double> walker(std::span<const JointIndices>(columns_), twists_);
-    walk(chain_, states(sample), corrections_, walker);
+    walk(chain_.chain(), chain_.motions(sample), corrections_, walker);
     Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(6, free_);
     for (std::size_t i = 0; i < twist_columns_.rotational.size(); ++i) {
       const Twist<double>& twist = twists_.rotational[i];
@@ -56,13 +49,8 @@ class TipDerivative {
   }
 
  private:
-  [[nodiscard]] std::vector<JointState<double>> states(const Sample& sample) const {
-    return measured_joint_states(chain_,
-                                 [&](const std::string& joint) { return *sample.position(joint); });
-  }
-
-  RuntimeChain chain_;
-  std::vector<JointIndices> parameters_, columns_;
+  SampledChain chain_;
+  std::vector<JointIndices> columns_;
   TwistColumns twist_columns_;
   Corrections<double> corrections_;
   ChainTwists<double> twists_;

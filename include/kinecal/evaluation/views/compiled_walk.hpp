@@ -19,6 +19,7 @@ struct WalkStart {
   std::size_t joint = 0;                                 ///< index of the first moving joint
   std::span<const JointCorrection<double>> corrections;  ///< of all joints
   std::span<const JointIndices> columns;                 ///< of the free parameters of all joints
+  std::size_t effects = 0;      ///< most_effects(); zero without joint models
   Twist<S>* turn = nullptr;     ///< where the next rotational twist is written, if any
   Vector3<S>* shift = nullptr;  ///< where the next translational twist is written, if any
 };
@@ -36,7 +37,7 @@ using Walk = void (*)(const WalkStart<S>&, const S* joints, Pose<S>& tip);
 template <bool kTwists, bool kModels, class Chain, class Columns, class S>
 void walk_to_tip(const Chain& chain, const Columns& columns, std::size_t first,
                  const WalkStart<S>& start, const S* joints, Pose<S>& tip) {
-  const JointStates<S, kModels> states{joints};
+  const JointStates<S, kModels> states{joints, start.effects};
   if constexpr (kTwists) {
     TwistWalker<S, Columns> walker(columns, start.turn, start.shift, start.pose);
     walk_on<kModels>(chain, first, states, start.corrections, walker);
@@ -63,28 +64,26 @@ template <class S>
   return kWalks[twists ? 1 : 0][models ? 1 : 0];
 }
 
-/// The walks of a chain that the compiler knows.
+/// The walks of a chain that the compiler knows, without joint models.
 template <class S>
 struct CompiledWalk {
-  std::string tip;                    ///< of the chain
-  std::vector<JointIndices> columns;  ///< for which with_twists was compiled
-  bool models;                        ///< true if both handle joint models
-  Walk<S> pose_only;                  ///< computes the pose
-  Walk<S> with_twists;                ///< computes the pose and the twists of free parameters
+  std::string tip;                      ///< of the chain
+  std::vector<OffsetAndFrame> columns;  ///< for which with_twists was compiled
+  Walk<S> pose_only;                    ///< computes the pose
+  Walk<S> with_twists;                  ///< computes the pose and the twists of free parameters
 };
 
 /// The columns of each joint as constants.
 template <class C, class F>
 struct StaticColumns {
-  [[nodiscard]] constexpr const JointIndices& operator[](std::size_t joint) const {
+  [[nodiscard]] constexpr const OffsetAndFrame& operator[](std::size_t joint) const {
     return kColumnsOf<C, F>[joint];
   }
 };
 
 template <class S, bool kTwists, class C, class F>
 KINECAL_FLATTEN void walk_static_chain(const WalkStart<S>& start, const S* joints, Pose<S>& tip) {
-  constexpr bool kModels = have_models(kColumnsOf<C, F>);
-  walk_to_tip<kTwists, kModels>(C{}, StaticColumns<C, F>{}, C::kFirstMotion, start, joints, tip);
+  walk_to_tip<kTwists, false>(C{}, StaticColumns<C, F>{}, C::kFirstMotion, start, joints, tip);
 }
 
 /// Compiles the walks of a chain.
@@ -95,7 +94,6 @@ template <class S, StaticChain C, class F>
   const auto& columns = kColumnsOf<C, F>;
   return {.tip = std::string(C::kVirtual.empty() ? C::kTip : C::kVirtual),
           .columns = {columns.begin(), columns.end()},
-          .models = have_models(columns),
           .pose_only = &walk_static_chain<S, false, C, F>,
           .with_twists = &walk_static_chain<S, true, C, F>};
 }

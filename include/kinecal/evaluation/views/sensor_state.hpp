@@ -18,7 +18,7 @@ struct SensorState {
   std::vector<Corrections<double>> corrections;    ///< of each chain
   std::vector<std::vector<JointIndices>> columns;  ///< of the joints of each chain
   std::vector<TwistColumns> twist_columns;         ///< of each chain
-  std::vector<bool> models;                        ///< of each chain: some joint has a model
+  std::vector<std::size_t> effects;                ///< of each chain: most_effects()
   OwnParameters own;                               ///< of the sensor itself
   bool placed;                                     ///< a block uses more of it than predictions
 

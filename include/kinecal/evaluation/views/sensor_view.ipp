@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "kinecal/evaluation/views/sensor_view.hpp"
 
 namespace kinecal::detail {
@@ -21,19 +23,21 @@ void SensorView<S>::start(const MountedSensor& sensor, const SensorEvaluation<S>
   starts_.clear();
   walks_.clear();
   for (std::size_t c = 0; c < chains; ++c) {
-    const RuntimeChain& chain = sensor.chains()[c];
+    const RuntimeChain& chain = sensor.chains()[c].chain();
     const std::span<const JointIndices> columns = state.columns[c];
     state.twist_columns[c].resize(twists_[c]);
     TwistWalker<S> walker(columns, twists_[c]);
     const std::size_t joint = walk_to_first_motion(chain, state.corrections[c], walker);
+    const bool models = state.effects[c] > 0;
     starts_.push_back({walker.walker.pose, &chain, joint, state.corrections[c], columns,
-                       walker.turn, walker.shift});
-    walks_.push_back(runtime_walk<S>(derivatives, state.models[c]));
-    if (c >= evaluation.walks.size()) continue;
+                       state.effects[c], walker.turn, walker.shift});
+    walks_.push_back(runtime_walk<S>(derivatives, models));
+    if (c >= evaluation.walks.size() || models) continue;
     const CompiledWalk<S>& compiled = evaluation.walks[c];
-    if (compiled.models != state.models[c]) continue;
     if (!derivatives) walks_[c] = compiled.pose_only;
-    if (derivatives && compiled.columns == state.columns[c]) walks_[c] = compiled.with_twists;
+    const bool same = std::equal(columns.begin(), columns.end(), compiled.columns.begin(),
+                                 compiled.columns.end());
+    if (derivatives && same) walks_[c] = compiled.with_twists;
   }
 }
 

@@ -17,6 +17,7 @@
 #include "kinecal/files/samples/feature_id_parameters.ipp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
+#include "kinecal/samples/joint_moves.hpp"
 
 namespace kinecal {
 
@@ -255,7 +256,9 @@ std::vector<Sample> read_csv_samples(const std::string& csv, const std::string& 
   const CsvMapping columns = read_csv_mapping(mapping, diagnostics);
   const std::string text = detail::read_text_file(csv);
   if (diagnostics.errors.size() != before) return {};
-  return csv_samples(text, columns, csv, diagnostics);
+  std::vector<Sample> samples = csv_samples(text, columns, csv, diagnostics);
+  set_joint_moves(samples);
+  return samples;
 }
 
 }  // namespace kinecal

@@ -9,13 +9,16 @@
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/message_decoder.ipp"
 #include "kinecal/files/recordings/message_samples.ipp"
+#include "kinecal/samples/joint_moves.hpp"
 
 namespace kinecal {
 
 Recording read_recording(const std::string& path, Diagnostics& diagnostics, unsigned threads,
                          const ProgressMeter& meter) {
   if (recording_format(path) == RecordingFormat::yaml) {
-    return {read_samples(path, diagnostics, threads, meter), {}};
+    Recording recording{read_samples(path, diagnostics, threads, meter), {}};
+    set_joint_moves(recording.samples);
+    return recording;
   }
   Recording recording;
   const std::size_t errors_before = diagnostics.errors.size();
@@ -39,6 +42,7 @@ Recording read_recording(const std::string& path, Diagnostics& diagnostics, unsi
   };
   read_bag(path, {wants, handle, meter}, diagnostics);
   recording.samples = samples.take(diagnostics);
+  set_joint_moves(recording.samples);
   if (number == 0 && diagnostics.errors.size() == errors_before) {
     diagnostics.error({path, 0},
                       "no messages of robot_calibration_msgs/CalibrationData in this bag; "

@@ -76,6 +76,9 @@ namespace kinecal::detail {
   }
   MessageFields joints = fields("name", detail::texts(sample.joint_names), "position",
                                 numbers(sample.joint_positions));
+  if (!sample.joint_velocities.empty()) {
+    joints.fields.emplace_back("velocity", numbers(sample.joint_velocities));
+  }
   if (sample.stamp && sample.stamp->count() >= 0) {
     constexpr std::int64_t kSecond = 1'000'000'000;
     joints.fields.emplace_back(

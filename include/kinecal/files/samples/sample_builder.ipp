@@ -81,6 +81,8 @@ class SampleBuilder {
   void number(SampleNode node, int line, double value) {
     if (node == SampleNode::joint_position) {
       sample_.joint_positions.push_back(value);
+    } else if (node == SampleNode::joint_velocity) {
+      sample_.joint_velocities.push_back(value);
     } else if (node == SampleNode::x) {
       feature().point.x() = value;
     } else if (node == SampleNode::y) {
@@ -135,6 +137,14 @@ class SampleBuilder {
     if (names != values) {
       errors_.add(line, fmt::format("joint_states: {} name{} but {} position{}", names,
                                     names == 1 ? "" : "s", values, values == 1 ? "" : "s"));
+    }
+    std::vector<double>& velocities = sample_.joint_velocities;
+    if (!velocities.empty() && velocities.size() != names) {
+      errors_.warn_once(
+          line, fmt::format("joint_states: {} names but {} velocit{}, so velocities "
+                            "are not used",
+                            names, velocities.size(), velocities.size() == 1 ? "y" : "ies"));
+      velocities.clear();
     }
   }
 

@@ -1,7 +1,7 @@
 // The keys of a recorded sample as a tree.
 //
 //   joint_states: {header: {stamp: {secs: ..., nsecs: ...}},                (if it is known)
-//                  name: [...], position: [...]}
+//                  name: [...], position: [...], velocity: [...]}         (velocity may be absent)
 //   conditions: {temperature: ..., ...}                                   (if there are any)
 //   observations:
 //   - sensor_name: camera
@@ -36,6 +36,8 @@ enum class SampleNode : std::uint8_t {
   joint_name,
   joint_positions,
   joint_position,
+  joint_velocities,
+  joint_velocity,
   conditions,
   condition,
   observations,
@@ -110,6 +112,8 @@ struct SampleNodeRule {
       {joint_name, joint_names, word, ""},
       {joint_positions, joint_states, list, "position", "", true},
       {joint_position, joint_positions, number, ""},
+      {joint_velocities, joint_states, list, "velocity"},
+      {joint_velocity, joint_velocities, number, ""},
       {conditions, sample, map, "conditions"},
       {condition, conditions, number, ""},
       {observations, sample, list, "observations", "", true},

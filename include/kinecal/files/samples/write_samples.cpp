@@ -30,8 +30,12 @@ namespace {
     header = fmt::format("header: {{stamp: {{secs: {}, nsecs: {}}}}}, ",
                          sample.stamp->count() / kSecond, sample.stamp->count() % kSecond);
   }
-  return fmt::format("joint_states: {{{}name: [{}], position: {}}}\n", header, names,
-                     numbers_to_yaml(sample.joint_positions));
+  std::string velocities;
+  if (!sample.joint_velocities.empty()) {
+    velocities = ", velocity: " + numbers_to_yaml(sample.joint_velocities);
+  }
+  return fmt::format("joint_states: {{{}name: [{}], position: {}{}}}\n", header, names,
+                     numbers_to_yaml(sample.joint_positions), velocities);
 }
 
 /// Empty for a sample without conditions.

@@ -7,6 +7,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/files/urdf/read_urdf.hpp"
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -89,6 +90,20 @@ void check_urdf_joint(const UrdfText& source, pugi::xml_node joint, Diagnostics&
   }
 }
 
+/// The masses of a robot's links.  Ones that are not numbers from zero are left out: kinematics does not need
+/// them.
+[[nodiscard]] RobotWeight weight_of(const urdf::ModelInterface& model, const Robot& robot) {
+  RobotWeight weight;
+  for (const auto& [name, link] : model.links_) {
+    if (!link->inertial || !robot.has_link(name)) continue;
+    const urdf::Vector3& center = link->inertial->origin.position;
+    const LinkMass mass{link->inertial->mass, {center.x, center.y, center.z}};
+    if (!(mass.mass > 0.0) || !std::isfinite(mass.mass) || !mass.center.allFinite()) continue;
+    weight.links.emplace(name, mass);
+  }
+  return weight;
+}
+
 /// Reports errors of the joints and their connections for which urdfdom has no clear message.
 /// (urdfdom would also leak links that form a circle.)
 void check_urdf_joints(const UrdfText& source) {
@@ -162,7 +177,9 @@ Robot parse_urdf(const std::string& text, const std::string& name_for_messages) 
     const urdf::JointConstSharedPtr joint = model->getJoint(node.attribute("name").value());
     joints.push_back(detail::make_urdf_joint(source, node, *model, *joint));
   }
-  return detail::make_urdf_robot(source, std::move(joints));
+  Robot robot = detail::make_urdf_robot(source, std::move(joints));
+  robot.set_weight(detail::weight_of(*model, robot));
+  return robot;
 }
 
 std::string read_urdf_text(const std::string& path) {

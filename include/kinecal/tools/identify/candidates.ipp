@@ -14,8 +14,9 @@
 
 namespace kinecal::detail {
 
-/// What an engineer names first: zeros, then mounts, sensors, the arm's geometry, its gears, its encoders.
-enum IdentifyRank { kZero, kMount, kOfSensor, kGeometry, kGear, kEncoder };
+/// What an engineer names first: zeros, then mounts, sensors, lags, the arm's geometry, then joint models in
+/// the order of joint_models().
+enum IdentifyRank { kZero, kMount, kOfSensor, kLagOfSensor, kGeometry, kJointModel };
 
 /// The joints that move some sensor or target, in the order of the robot; not those that mimic others.
 [[nodiscard]] inline std::vector<const Joint*> moving_joints(const Config& config,

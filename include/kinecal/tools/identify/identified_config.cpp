@@ -7,13 +7,13 @@
 
 #include "kinecal/config/registry.hpp"
 #include "kinecal/geometry/rpy.hpp"
-#include "kinecal/kinematics/joint_model.hpp"
-#include "kinecal/parameters/joint_parameters.hpp"
 #include "kinecal/tools/identify/candidates.ipp"
+#include "kinecal/tools/identify/model_candidates.ipp"
 
 namespace kinecal {
 
-Config with_all_candidates(const Config& config, const Robot& robot) {
+Config with_all_candidates(const Config& config, const Robot& robot,
+                           std::span<const Sample> samples) {
   Config all = config;
   StepConfig& step = all.steps.front();
   const auto free = [&](const std::string& name) {
@@ -21,11 +21,10 @@ Config with_all_candidates(const Config& config, const Robot& robot) {
   };
   for (const Joint* joint : detail::moving_joints(config, robot)) {
     free(joint->name);
-    for (std::size_t k = 0; k < kJointModelSize; ++k) {
-      if (may_have_model(joint->type, k))
-        free(joint->name + "_" + std::string(kJointModelNames[k]));
-    }
     for (std::size_t axis = 0; axis < 6; ++axis) detail::free_axis(step, joint->name, axis);
+  }
+  for (const detail::ModelCandidate& of_joint : detail::model_candidates(config, robot, samples)) {
+    for (const std::string& name : of_joint.parameters) free(name);
   }
   for (const ModelConfig& model : step.models) {
     const SensorEntry* entry = registry().sensor(model.type);
@@ -38,7 +37,8 @@ Config with_all_candidates(const Config& config, const Robot& robot) {
   return all;
 }
 
-IdentifyTask identify_task(const Config& config, const AnyProblem& problem, bool geometry_only) {
+IdentifyTask identify_task(const Config& config, const AnyProblem& problem,
+                           std::span<const Sample> samples, bool geometry_only) {
   const Robot& robot = problem.robot();
   const ParameterTable& table = problem.table();
   const StepConfig& step = config.steps.front();
@@ -97,11 +97,10 @@ IdentifyTask identify_task(const Config& config, const AnyProblem& problem, bool
     }
   }
   if (geometry_only) return task;
-  for (const Joint* joint : joints) {
-    const std::string gear = joint->name + "_gear_ratio", sine = joint->name + "_eccentric_sin",
-                      cosine = joint->name + "_eccentric_cos";
-    add(detail::kGear, gear, {gear});
-    add(detail::kEncoder, sine + ", " + cosine, {sine, cosine});
+  for (const detail::ModelCandidate& of_joint : detail::model_candidates(config, robot, samples)) {
+    std::string name;
+    for (const std::string& part : of_joint.parameters) name += (name.empty() ? "" : ", ") + part;
+    add(of_joint.rank, name, of_joint.parameters);
   }
   return task;
 }

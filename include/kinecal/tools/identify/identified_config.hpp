@@ -15,8 +15,11 @@ namespace kinecal {
 
 /// A configuration that frees everything which may be wrong, so that its problem has all parameters: offsets,
 /// frames and joint models of all joints that move a sensor or target, and all parameters of sensors.
-/// @param config  of one step
-[[nodiscard]] Config with_all_candidates(const Config& config, const Robot& robot);
+/// @param config   of one step
+/// @param samples  decide which models are candidates: backlash needs joints that came from both sides, a lag
+///                 needs velocities
+[[nodiscard]] Config with_all_candidates(const Config& config, const Robot& robot,
+                                         std::span<const Sample> samples);
 
 /// What the search begins with, and what it may free.
 struct IdentifyTask {
@@ -30,6 +33,7 @@ struct IdentifyTask {
 /// @param geometry_only  without joint models, which a URDF cannot hold
 /// @param problem  of with_all_candidates()
 [[nodiscard]] IdentifyTask identify_task(const Config& config, const AnyProblem& problem,
+                                         std::span<const Sample> samples,
                                          bool geometry_only = false);
 
 /// The configuration that frees what was found.

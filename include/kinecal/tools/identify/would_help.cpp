@@ -37,7 +37,7 @@ std::vector<std::string> would_help(const Config& config, const Robot& robot,
   if (!fits || samples.size() < kFewest) return {};
   const std::vector<Sample> some = detail::some_of(samples, kMost);
   Diagnostics ignored;
-  Calibration wide = assemble(with_all_candidates(config, robot), robot, some, ignored);
+  Calibration wide = assemble(with_all_candidates(config, robot, some), robot, some, ignored);
   if (!ignored.errors.empty() || wide.steps.size() != 1) return {};
   const AnyProblem& problem = *wide.steps.front().problem;
   if (are_one_pose(problem, some)) return {};  // the verdict says so
@@ -49,7 +49,7 @@ std::vector<std::string> would_help(const Config& config, const Robot& robot,
   wide.steps.front().assignments.clear();
   const std::vector<int> base = detail::free_in(wide.table, calibration);
   const auto is_free = [&](int p) { return std::find(base.begin(), base.end(), p) != base.end(); };
-  std::vector<IdentifyCandidate> candidates = identify_task(config, problem).candidates;
+  std::vector<IdentifyCandidate> candidates = identify_task(config, problem, some).candidates;
   std::erase_if(candidates, [&](const IdentifyCandidate& candidate) {
     return std::any_of(candidate.parameters.begin(), candidate.parameters.end(), is_free);
   });

@@ -1,0 +1,116 @@
+// What a sample says of a joint, for joint models.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "kinecal/kinematics/gravity_load.hpp"
+#include "kinecal/parameters/joint_model.hpp"
+#include "kinecal/samples/sample.hpp"
+#include "kinecal/text/nearest_name.hpp"
+
+namespace kinecal::detail {
+
+/// The measured position of a joint.
+/// @throws SampleError  if it is missing or not a number
+[[nodiscard]] inline double position_in(const Sample& sample, const std::string& joint) {
+  const std::optional<double> position = sample.position(joint);
+  if (!position) {
+    throw SampleError("joint '" + joint + "' is not in the sample" +
+                      did_you_mean(joint, sample.joint_names));
+  }
+  if (!std::isfinite(*position)) {
+    throw SampleError("the position of joint '" + joint + "' is not a number");
+  }
+  return *position;
+}
+
+/// The loads of all joints in a sample, computed when they are needed.  Joints that the sample does
+/// not have stand at zero.
+class SampleLoads {
+ public:
+  /// @param robot  must outlive this, like the sample
+  SampleLoads(const Robot& robot, const Sample& sample) : robot_(robot), sample_(sample) {}
+
+  [[nodiscard]] const Robot& robot() const { return robot_; }
+  /// Of all links and the payload.
+  [[nodiscard]] const GravityLoads& of_links() {
+    if (!of_links_) {
+      of_links_.emplace(without_masses());
+      of_links_->add_links();
+      const std::string& link = robot_.weight().payload;
+      const auto payload = sample_.conditions.find("payload");
+      if (!link.empty() && payload != sample_.conditions.end()) {
+        of_links_->add(link, Vector3<double>::Zero(), payload->second);
+      }
+    }
+    return *of_links_;
+  }
+  /// Of one kilogram at the origin of a link.
+  [[nodiscard]] const GravityLoads& of_kilogram(const std::string& link) {
+    auto known = of_kilogram_.find(link);
+    if (known == of_kilogram_.end()) {
+      known = of_kilogram_.emplace(link, without_masses()).first;
+      known->second.add(link, Vector3<double>::Zero(), 1.0);
+    }
+    return known->second;
+  }
+
+ private:
+  [[nodiscard]] GravityLoads without_masses() const {
+    return {robot_,
+            [&](const std::string& joint) { return sample_.position(joint).value_or(0.0); }};
+  }
+
+  const Robot& robot_;
+  const Sample& sample_;
+  std::optional<GravityLoads> of_links_;
+  std::map<std::string, GravityLoads> of_kilogram_;
+};
+
+/// What a sample says of a joint.
+class SampleReading final : public JointReading {
+ public:
+  /// @param joint  all three must outlive this
+  SampleReading(const Sample& sample, const std::string& joint, SampleLoads& loads)
+      : sample_(sample),
+        joint_(joint),
+        driver_(drive(loads.robot(), loads.robot().joint(joint)).joint),
+        loads_(loads) {}
+
+  [[nodiscard]] double position() const override { return position_in(sample_, driver_); }
+  [[nodiscard]] double position_of(const std::string& joint) const override {
+    return position_in(sample_, joint);
+  }
+  [[nodiscard]] double velocity() const override {
+    if (const auto velocity = sample_.velocity(driver_)) return *velocity;
+    throw SampleError("the velocity of joint '" + joint_ +
+                      "' is not in the sample; a lag needs it: record it, or write it as "
+                      "'velocity' beside 'position'");
+  }
+  [[nodiscard]] double direction() const override {
+    constexpr double kMoves = 1e-3;  // rad/s or m/s
+    const double velocity = sample_.velocity(driver_).value_or(0.0);
+    if (std::abs(velocity) > kMoves) return velocity > 0.0 ? 1.0 : -1.0;
+    if (const auto move = sample_.move(driver_))
+      return *move > 0.0 ? 1.0 : *move < 0.0 ? -1.0 : 0.0;
+    throw SampleError("the direction in which joint '" + joint_ +
+                      "' moved last is unknown; backlash needs samples in the order of their "
+                      "recording, or velocities");
+  }
+  [[nodiscard]] double load() const override { return loads_.of_links().of(joint_); }
+  [[nodiscard]] double load_of(const std::string& link) const override {
+    return loads_.of_kilogram(link).of(joint_);
+  }
+
+ private:
+  const Sample& sample_;
+  const std::string& joint_;
+  std::string driver_;  ///< the joint that drives it: itself unless it mimics
+  SampleLoads& loads_;
+};
+
+}  // namespace kinecal::detail

@@ -1,0 +1,134 @@
+// The joint models that a robot's joints may have, as candidates: for identified_config.cpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/samples/sample.hpp"
+#include "kinecal/tools/identify/candidates.ipp"
+
+namespace kinecal::detail {
+
+/// Parameters that come in together.
+struct ModelCandidate {
+  int rank = 0;  ///< see IdentifyRank
+  std::vector<std::string> parameters;
+};
+
+/// True if a joint came to enough samples from either side.
+[[nodiscard]] inline bool came_from_both_sides(const std::string& joint,
+                                               std::span<const Sample> samples) {
+  constexpr int kFewest = 5;
+  int up = 0, down = 0;
+  for (const Sample& sample : samples) {
+    const std::optional<double> move = sample.move(joint);
+    if (!move) return false;  // then the model cannot be used
+    up += *move > 0.0 ? 1 : 0;
+    down += *move < 0.0 ? 1 : 0;
+  }
+  return std::min(up, down) >= kFewest;
+}
+
+/// True if all samples have the velocities of joints, and some moved.
+[[nodiscard]] inline bool have_velocities(const std::vector<const Joint*>& joints,
+                                          std::span<const Sample> samples) {
+  constexpr double kMoves = 1e-2;  // rad/s or m/s
+  bool moved = false;
+  for (const Sample& sample : samples) {
+    for (const Joint* joint : joints) {
+      const std::optional<double> velocity = sample.velocity(joint->name);
+      if (!velocity || !std::isfinite(*velocity)) return false;
+      moved |= std::abs(*velocity) > kMoves;
+    }
+  }
+  return moved;
+}
+
+/// The chains from the base to the sensors.
+[[nodiscard]] inline std::vector<RuntimeChain> chains_to_sensors(const Config& config,
+                                                                 const Robot& robot) {
+  std::vector<RuntimeChain> chains;
+  for (const ModelConfig& model : config.steps.front().models) {
+    if (!robot.has_link(model.frame) || !robot.has_link(config.base_link)) continue;
+    chains.push_back(make_chain(robot, config.base_link, model.frame));
+  }
+  return chains;
+}
+
+/// The joints that move right before and after a joint in a chain.
+[[nodiscard]] inline std::set<std::string> neighbours_of(const std::string& joint,
+                                                         const std::vector<RuntimeChain>& chains) {
+  std::set<std::string> neighbours;
+  for (const RuntimeChain& chain : chains) {
+    std::vector<std::string> moving;
+    for (const ChainJoint& one : chain.joints) {
+      if (moves(one.type)) moving.push_back(one.drive.joint);
+    }
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+      if (moving[i] != joint) continue;
+      if (i > 0) neighbours.insert(moving[i - 1]);
+      if (i + 1 < moving.size()) neighbours.insert(moving[i + 1]);
+    }
+  }
+  neighbours.erase(joint);
+  return neighbours;
+}
+
+/// Joint models of the joints that move a sensor, and lags of the sensors.  Couplings are of neighbours;
+/// masses that the URDF does not have are not searched for.
+[[nodiscard]] inline std::vector<ModelCandidate> model_candidates(const Config& config,
+                                                                  const Robot& robot,
+                                                                  std::span<const Sample> samples) {
+  std::vector<ModelCandidate> all;
+  const std::vector<RuntimeChain> chains = chains_to_sensors(config, robot);
+  std::vector<const Joint*> joints = moving_joints(config, robot);
+  const auto add_models = [&](const Joint& joint) {
+    int rank = kJointModel;
+    for (const auto& model : joint_models()) {
+      const int own = rank++;
+      if (!model->suits(joint.type, joint.mimic.has_value())) continue;
+      if (model->needs_masses() && robot.weight().links.empty()) continue;
+      std::vector<std::string> names;
+      for (const ParameterInfo& info : model->parameters()) {
+        names.push_back(parameter_name(joint.name, info.name));
+      }
+      if (model->partner() == ModelPartner::none) {
+        const bool needs_moves = names.front() == parameter_name(joint.name, "backlash");
+        if (!needs_moves || came_from_both_sides(joint.name, samples))
+          all.push_back({own, std::move(names)});
+      } else if (model->partner() == ModelPartner::joint && !joint.mimic) {
+        for (const std::string& other : neighbours_of(joint.name, chains)) {
+          ModelCandidate& with_other = all.emplace_back(ModelCandidate{own, names});
+          for (std::string& name : with_other.parameters) name += "_" + other;
+        }
+      }
+    }
+  };
+  for (const Joint* joint : joints) add_models(*joint);
+  std::set<std::string> mimics;
+  for (const RuntimeChain& chain : chains) {
+    for (const ChainJoint& joint : chain.joints) {
+      if (!moves(joint.type) || joint.drive.joint == joint.name) continue;
+      if (mimics.insert(joint.name).second) add_models(robot.joint(joint.name));
+    }
+  }
+  if (!have_velocities(joints, samples)) return all;
+  for (const ModelConfig& model : config.steps.front().models) {
+    if (!robot.has_link(model.frame)) continue;
+    const auto moves_it = [](const ChainJoint& joint) { return moves(joint.type); };
+    const RuntimeChain chain = make_chain(robot, config.base_link, model.frame);
+    if (std::any_of(chain.joints.begin(), chain.joints.end(), moves_it)) {
+      const std::string prefix = model.param_name.empty() ? model.name : model.param_name;
+      all.push_back({kLagOfSensor, {parameter_name(prefix, kLag.name)}});
+    }
+  }
+  return all;
+}
+
+}  // namespace kinecal::detail
