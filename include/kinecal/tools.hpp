@@ -14,6 +14,8 @@
 #include "kinecal/tools/detect/still_view.hpp"
 #include "kinecal/tools/detect/view_topics.hpp"
 #include "kinecal/tools/identify/identified_config.hpp"
+#include "kinecal/tools/identify/open_config.hpp"
+#include "kinecal/tools/identify/robot_search.hpp"
 #include "kinecal/tools/identify/would_help.hpp"
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/determined_offsets.hpp"

@@ -23,9 +23,11 @@ struct SearchCandidate {
 
 /// How well a subset predicts: weighted residuals, root of the mean square of a component.
 struct SearchFit {
-  double fitted = 0.0;    ///< of all poses
-  double held_out = 0.0;  ///< of poses held out; infinite if a fold leaves something undetermined
-  double region = 0.0;    ///< of regions held out; 0: there are none
+  double fitted = 0.0;     ///< of all poses
+  double held_out = 0.0;   ///< of poses held out; infinite if a fold leaves something undetermined
+  double region = 0.0;     ///< of regions held out; 0: there are none
+  double deviation = 0.0;  ///< standard error of held_out, by poses
+  int columns = 0;         ///< free ones
 };
 
 /// A parameter that was found, in the order of what they explain.
@@ -81,6 +83,11 @@ class ParameterSearch {
   [[nodiscard]] std::vector<SearchStep> path(const std::vector<int>& base,
                                              const Candidates& candidates,
                                              const std::vector<int>& chosen) const;
+  /// What the next candidates would buy after the chosen ones: those that explain most, if the samples determine them.
+  /// @param most  steps
+  [[nodiscard]] std::vector<SearchStep> beyond(const std::vector<int>& base,
+                                               const Candidates& candidates,
+                                               const std::vector<int>& chosen, int most) const;
 
  private:
   /// A fit of a subset to all rows.
