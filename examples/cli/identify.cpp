@@ -49,13 +49,13 @@ int identify(const IdentifyOptions& options) {
   input.diagnostics.warnings.clear();  // calibrate repeats them: what a URDF cannot hold
   print(input.diagnostics);
   say("{}", search_summary(found, input));
+  Findings& findings = found.fit.findings;
+  for (const std::string& reason : findings.judgement.reasons) say("  - {}\n", reason);
   if (found.is_empty()) {
     say("{} was not written: no pose is unknown, and these samples support no parameter\n",
         options.output);
     return kNotUsable;
   }
-  Findings& findings = found.fit.findings;
-  for (const std::string& reason : findings.judgement.reasons) say("  - {}\n", reason);
   InputOptions next = calibration;
   next.config = options.output;
   findings.call = {options.command, input_options(next), "", KINECAL_VERSION,

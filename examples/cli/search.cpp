@@ -8,6 +8,7 @@
 
 #include "kinecal/config/config_to_yaml.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/tools/identify/another_robot.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
 
 namespace kinecal::cli {
@@ -36,6 +37,9 @@ SearchedFit search_and_fit(Input& input, const CalibrateOptions& options, bool g
     run(used_samples(all.fit.findings, input.samples));
   }
   all.fit.findings.search = reported(all.search);
+  if (const std::string why = another_robot(all.search); !why.empty()) {
+    all.fit.findings.judgement.add_causes(Grade::do_not_use, {why});
+  }
   all.config = config_to_yaml(
       all.search.config,
       "What these samples support; 'kinecal identify' found it.  With each parameter, the\n"

@@ -13,6 +13,7 @@
 #include "kinecal/tools/detect/recorded_views.hpp"
 #include "kinecal/tools/detect/still_view.hpp"
 #include "kinecal/tools/detect/view_topics.hpp"
+#include "kinecal/tools/identify/another_robot.hpp"
 #include "kinecal/tools/identify/identified_config.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
 #include "kinecal/tools/identify/robot_search.hpp"

@@ -25,8 +25,8 @@ TEST(SearchChart, HasABarForEachStepAndMarksTheChosenSet) {
   EXPECT_EQ(chart.all("//circle[@class='faint' and title]").size(), 1u) << "not freed";
   EXPECT_EQ(chart.all("//path[@class='median']").size(), 15u) << "a bar with two ends each";
   EXPECT_EQ(chart.all("//circle[@class='ring after' and @r='9']").size(), 1u);
-  EXPECT_THAT(chart.text("/svg/desc"), HasSubstr("Before: 9 parameters: 5.20 ± 0.36 mm. Chosen: 14 "
-                                                 "parameters: 0.460 ± 0.032 mm."));
+  EXPECT_THAT(chart.text("/svg/desc"), HasSubstr("Before: 9 parameters: 5.2 ± 0.36 mm. Chosen: 14 "
+                                                 "parameters: 0.46 ± 0.032 mm."));
 }
 
 TEST(SearchChart, BarsAreOneStandardErrorOnBothSides) {
@@ -34,7 +34,10 @@ TEST(SearchChart, BarsAreOneStandardErrorOnBothSides) {
   data.search.steps.resize(2);
   data.search.steps[0].held_out = 2e-3;
   data.search.steps[1].held_out = 1e-3;
-  for (ReportedSearchStep& step : data.search.steps) step.deviation = 0.25e-3;
+  for (ReportedSearchStep& step : data.search.steps) {
+    step.fitted = step.held_out;
+    step.deviation = 0.25e-3;
+  }
   const test::SvgChart chart = drawn(data);
   const auto circles = chart.all("//circle[@class='held' and title]");
   const double per_metre =
