@@ -194,7 +194,8 @@ struct StudyFiles {
   std::string scene;                 ///< file; empty: defaults
   std::string target;                ///< empty: the scene's
   int seed = 0;                      ///< zero: the scene's
-  std::string command = {};          ///< as the user typed it, for the page
+  std::vector<std::string> tell_apart = {};  ///< two candidates of identify; empty: none
+  std::string command = {};                  ///< as the user typed it, for the page
 };
 
 struct StudyOptions : StudyFiles {

@@ -10,6 +10,8 @@
 #include "kinecal/files/results/standard_output.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/report/findings.hpp"
+#include "kinecal/text/shell_word.hpp"
+#include "kinecal/tools/identify/tell_apart.hpp"
 #include "output_file.hpp"
 #include "report.hpp"
 #include "search.hpp"
@@ -33,6 +35,28 @@ CalibrateOptions calibration_of(const IdentifyOptions& options) {
 bool are_files(const std::vector<std::string>& inputs, const std::string& output) {
   return std::none_of(inputs.begin(), inputs.end(), detail::is_stream) &&
          !is_standard_output(output);
+}
+
+/// The name of a candidate for --tell-apart: one of several parameters is that of its first.
+std::string plain_name(const std::string& name) {
+  return name.substr(0, name.find(','));
+}
+
+/// The poses that would decide between what was freed and the first that looks alike, as a command; empty if nothing does.
+std::string deciding_command(const SearchedFit& found, const InputOptions& next) {
+  if (next.urdf.empty()) return "";
+  for (const ReportedSearchStep& step : found.fit.findings.search.steps) {
+    if (step.alike.empty()) continue;
+    const std::string names = plain_name(step.freed) + "," + plain_name(step.alike.front());
+    InputOptions inputs = next;
+    if (!sees_everywhere(found.search.config)) inputs.samples.clear();  // views are generated
+    inputs.cameras.clear();
+    return fmt::format(
+        "which poses would decide between what explains the same:\n"
+        "  kinecal select-poses {} --tell-apart {} --count 10 -o poses.yaml\n",
+        input_options(inputs), shell_word(names));
+  }
+  return "";
 }
 
 }  // namespace
@@ -70,6 +94,7 @@ int identify(const IdentifyOptions& options) {
   for (const std::string& report : options.reports) line += " · " + report;
   say("{}\n", line);
   if (!are_files(inputs, options.output)) return kDone;
+  say("{}", deciding_command(found, next));
   say("next: kinecal calibrate {} --output calibrated\n", input_options(next));
   return kDone;
 }

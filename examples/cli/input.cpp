@@ -179,12 +179,12 @@ Input read_input(const InputOptions& options) {
 
 std::string input_options(const InputOptions& options) {
   std::string text;
-  if (!options.urdf.empty()) text += "--urdf " + shell_word(options.urdf) + " ";
-  if (!options.config.empty()) text += "--config " + shell_word(options.config) + " ";
-  text += "--samples";
+  if (!options.urdf.empty()) text += " --urdf " + shell_word(options.urdf);
+  if (!options.config.empty()) text += " --config " + shell_word(options.config);
+  if (!options.samples.empty()) text += " --samples";
   for (const std::string& file : options.samples) text += " " + shell_word(file);
   for (const std::string& camera : options.cameras) text += " --camera " + shell_word(camera);
-  return text;
+  return text.empty() ? text : text.substr(1);
 }
 
 void print_or_throw(const Diagnostics& diagnostics) {

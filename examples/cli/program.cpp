@@ -420,6 +420,13 @@ void add_select_poses(CLI::App& command, SelectPosesOptions& options) {
                   "treat poses as equal if every joint is within this fraction of its range")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  command
+      .add_option("--tell-apart", options.tell_apart,
+                  "two candidates of 'kinecal identify' that explain the same: the poses that show "
+                  "which one is wrong; with --samples of a tracker, new poses between those of the "
+                  "samples")
+      ->delimiter(',')
+      ->type_name("A,B");
   command.add_option("--failures", options.failures, "poses that may fail")
       ->check(CLI::Range(0, 100))
       ->capture_default_str()

@@ -155,6 +155,19 @@ PoseSelection select_poses(const PoseCandidates& candidates, const SelectOptions
   return detail::PoseSearch(candidates, options).run();
 }
 
+PlainMatrix goal_of_parameters(const PoseCandidates& candidates, const std::vector<int>& columns) {
+  if (candidates.information.empty()) throw std::invalid_argument("there are no poses to choose");
+  const Eigen::Index n = candidates.information.front().rows();
+  Eigen::MatrixXd goal = Eigen::MatrixXd::Zero(n, n);
+  for (const int column : columns) {
+    for (const PlainMatrix& of : candidates.information) {
+      goal(column, column) +=
+          of.matrix()(column, column) / static_cast<double>(candidates.information.size());
+    }
+  }
+  return goal;
+}
+
 double design_value(const PoseCandidates& candidates, const std::vector<int>& chosen,
                     PoseCriterion criterion) {
   const detail::PoseDesign design(candidates, criterion);

@@ -35,6 +35,8 @@ struct IdentifyStep {
   std::vector<int> alike;  ///< other candidates that explain the same
   double deviation = 0.0;  ///< standard error of held_out
   int parameters = 0;      ///< that are free
+  std::vector<int> inseparable =
+      {};  ///< those of `alike` that no sample like these tells from it: either is as good
 };
 
 /// What was found.

@@ -37,6 +37,8 @@ struct SearchStep {
   double certainty =
       0.0;  ///< rise of the error on held-out poses without it alone, in its standard errors
   std::vector<int> alike = {};  ///< other candidates that would do as well in place of it
+  std::vector<int> inseparable =
+      {};  ///< those of them that add nothing beside it: no sample like these separates them
 };
 
 /// The samples of a search.

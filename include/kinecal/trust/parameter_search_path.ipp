@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -38,6 +39,7 @@ std::vector<SearchStep> ParameterSearch::path(const std::vector<int>& base,
                                               const std::vector<int>& chosen) const {
   std::vector<SearchStep> steps;
   std::vector<int> free, left = chosen;
+  const Whole all = whole_fit(detail::columns_of(base, candidates, chosen));
   while (!left.empty()) {
     const Whole whole = whole_fit(detail::columns_of(base, candidates, free));
     const auto gain = [&](int k) {
@@ -52,6 +54,10 @@ std::vector<SearchStep> ParameterSearch::path(const std::vector<int>& base,
     step.fit = fit_of(base, candidates, free);
     step.certainty = certainty_of(detail::columns_of(base, candidates, chosen), without);
     step.alike = like(whole_fit(without), candidates, chosen, step.candidate);
+    std::copy_if(step.alike.begin(), step.alike.end(), std::back_inserter(step.inseparable),
+                 [&](int k) {
+                   return gain_of(all, candidates[static_cast<std::size_t>(k)], k).squares <= 0.0;
+                 });
     steps.push_back(std::move(step));
   }
   return steps;
