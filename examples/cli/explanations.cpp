@@ -107,8 +107,9 @@ void choose_between(const StudyInput& input, PoseChoice& choice) {
   constexpr double kTheSame = 0.9999;  // of a correlation by all poses together
   if (known.correlation > kTheSame) {
     throw InputError(fmt::format(
-        "--tell-apart: no pose tells '{}' and '{}' apart: not even all {} together; a calibration "
-        "with either is as good, so free the one that you can correct",
+        "--tell-apart: no pose tells '{}' and '{}' apart, beside what else is free: not even all "
+        "{} "
+        "together; a calibration with either is as good, so free the one that you can correct",
         input.explanations[0].front(), input.explanations[1].front(), counted(all.size(), "pose")));
   }
   choice.candidates.goal = goal_of_parameters(choice.candidates, columns);

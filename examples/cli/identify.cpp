@@ -46,8 +46,13 @@ std::string plain_name(const std::string& name) {
 std::string deciding_command(const SearchedFit& found, const InputOptions& next) {
   if (next.urdf.empty()) return "";
   for (const ReportedSearchStep& step : found.fit.findings.search.steps) {
-    if (step.alike.empty()) continue;
-    const std::string names = plain_name(step.freed) + "," + plain_name(step.alike.front());
+    const auto other =
+        std::find_if(step.alike.begin(), step.alike.end(), [&](const std::string& name) {
+          return std::find(step.inseparable.begin(), step.inseparable.end(), name) ==
+                 step.inseparable.end();
+        });
+    if (other == step.alike.end()) continue;
+    const std::string names = plain_name(step.freed) + "," + plain_name(*other);
     InputOptions inputs = next;
     if (!sees_everywhere(found.search.config)) inputs.samples.clear();  // views are generated
     inputs.cameras.clear();

@@ -143,8 +143,16 @@ inline void add_search(ReportData& data) {
   data.search.unit = "m";
   const auto add = [&](const std::string& freed, int parameters, double held_out,
                        bool is_chosen = true) {
-    data.search.steps.push_back(
-        {freed, parameters, 0.94 * held_out, held_out, 0.07 * held_out, 0.0, 3.1, is_chosen, {}});
+    data.search.steps.push_back({freed,
+                                 parameters,
+                                 0.94 * held_out,
+                                 held_out,
+                                 0.07 * held_out,
+                                 0.0,
+                                 3.1,
+                                 is_chosen,
+                                 {},
+                                 {}});
   };
   add("", 9, 5.2e-3);
   add("elbow_flex_joint", 10, 1.9e-3);

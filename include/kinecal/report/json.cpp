@@ -123,7 +123,8 @@ namespace detail {
           {"held_out_error", std::isfinite(step.held_out) ? Json(step.deviation) : Json()},
           {"regions_held_out", step.region > 0.0 ? Json(step.region) : Json()},
           {"certainty", step.freed.empty() ? Json() : Json(step.certainty)},
-          {"alike", step.alike}};
+          {"alike", step.alike},
+          {"inseparable", step.inseparable}};
 }
 
 [[nodiscard]] inline Json json_captures(const Findings& findings, const Assessment& step) {

@@ -19,7 +19,8 @@ struct ReportedSearchStep {
   double certainty = 0.0;  ///< rise of the error on held-out poses without it alone, in its
                            ///< standard errors
   bool is_chosen = true;   ///< false: tried after the chosen ones, and not freed
-  std::vector<std::string> alike = {};  ///< what explains the same in place of it
+  std::vector<std::string> alike = {};        ///< what explains the same in place of it
+  std::vector<std::string> inseparable = {};  ///< of these, what no sample like these tells from it
 };
 
 /// A search: the chosen steps in the order of what they explain, then those that were not.

@@ -53,7 +53,7 @@ void find_turns(Identification& search, Identified& found) {
   const double one = search.distance_of_one();
   return {step.candidate,           one * step.fit.fitted, one * step.fit.held_out,
           one * step.fit.region,    step.certainty,        step.alike,
-          one * step.fit.deviation, step.fit.columns};
+          one * step.fit.deviation, step.fit.columns,      step.inseparable};
 }
 
 Identified run(Identification& search) {

@@ -35,18 +35,39 @@ namespace {
                         .certainty = step.certainty,
                         .is_chosen = is_chosen};
   for (const int k : step.alike) of.alike.push_back(name_of(search, k));
+  for (const int k : step.inseparable) of.inseparable.push_back(name_of(search, k));
   return of;
 }
 
-/// "in place of elbow_joint, these explain the same: a, b, c, d and 3 more"
-[[nodiscard]] std::string alike_text(const ReportedSearchStep& step) {
+/// "a, b, c, d and 3 more"
+[[nodiscard]] std::string some_names(const std::vector<std::string>& names) {
   constexpr std::size_t kShown = 4;
-  std::string others;
-  for (std::size_t i = 0; i < std::min(kShown, step.alike.size()); ++i) {
-    others += (i == 0 ? "" : ", ") + step.alike[i];
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + names[i];
   }
-  if (step.alike.size() > kShown) others += fmt::format(" and {} more", step.alike.size() - kShown);
-  return fmt::format("in place of {}, these explain the same: {}\n", step.freed, others);
+  return names.size() > kShown ? text + fmt::format(" and {} more", names.size() - kShown) : text;
+}
+
+/// What explains the same: first what no sample tells apart.
+[[nodiscard]] std::string alike_text(const ReportedSearchStep& step) {
+  std::string text;
+  if (!step.inseparable.empty()) {
+    text += fmt::format("no sample like these tells {} from {}: either is as good\n", step.freed,
+                        some_names(step.inseparable));
+  }
+  std::vector<std::string> others;
+  for (const std::string& name : step.alike) {
+    if (std::find(step.inseparable.begin(), step.inseparable.end(), name) ==
+        step.inseparable.end()) {
+      others.push_back(name);
+    }
+  }
+  if (!others.empty()) {
+    text +=
+        fmt::format("in place of {}, these explain the same: {}\n", step.freed, some_names(others));
+  }
+  return text;
 }
 
 /// Takes what is held out of a search: a parameter, all of a frame, or a candidate by its name.
