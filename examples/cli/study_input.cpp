@@ -88,12 +88,26 @@ ParameterTable take_poses(const StudyFiles& files, int count, StudyInput& input)
   return made.values;
 }
 
+/// True if all features of a sample are numbers.
+bool is_finite(const Sample& sample) {
+  return std::all_of(sample.observations.begin(), sample.observations.end(), [](const auto& of) {
+    return std::all_of(of.features.begin(), of.features.end(),
+                       [](const Feature& feature) { return feature.point.allFinite(); });
+  });
+}
+
 /// Adds new poses before the recorded samples, which exist already: positions between those that were recorded, and
 /// the features of recorded samples.
 void add_poses_between(int count, std::uint64_t seed, StudyInput& input) {
-  const std::vector<Sample> recorded = input.samples;
+  std::vector<Sample> recorded;
+  std::vector<CapturePose> poses, known;
+  for (std::size_t i = 0; i < input.samples.size(); ++i) {  // the others say nothing
+    if (!is_finite(input.samples[i])) continue;
+    recorded.push_back(input.samples[i]);
+    known.push_back(input.poses[i]);
+  }
+  if (recorded.empty()) throw InputError("--samples: no sample has features that are numbers");
   std::vector<Sample> made;
-  std::vector<CapturePose> poses;
   SeededRandom random(seed);
   std::map<std::string, std::pair<double, double>> ranges;
   for (const Sample& sample : recorded) {
@@ -114,8 +128,10 @@ void add_poses_between(int count, std::uint64_t seed, StudyInput& input) {
     made.push_back(std::move(sample));
   }
   input.have = recorded.size();
-  input.samples.insert(input.samples.begin(), made.begin(), made.end());
-  input.poses.insert(input.poses.begin(), poses.begin(), poses.end());
+  made.insert(made.end(), recorded.begin(), recorded.end());
+  poses.insert(poses.end(), known.begin(), known.end());
+  input.samples = std::move(made);
+  input.poses = std::move(poses);
 }
 
 /// Frees two explanations that are to be told apart; with recorded samples, adds poses where no camera must see them.
