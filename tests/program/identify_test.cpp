@@ -109,6 +109,21 @@ TEST_F(IdentifyProgram, HoldsWhatItIsTold) {
                                      "you mean 'wrist_1_joint'?"));
 }
 
+TEST_F(IdentifyProgram, SaysThatSamplesSupportNothing) {
+  ASSERT_EQ(kinecal("calibrate " + kFiles + "--offsets origin --output out").code, 0);
+  const std::string right = "--urdf out/calibrated.urdf --samples samples.yaml ";
+  const Outcome poses = kinecal("identify " + right);
+  EXPECT_EQ(poses.code, 0) << poses.err;
+  EXPECT_THAT(poses.out, HasSubstr("these samples support none of them: only unknown poses are "
+                                   "freed"));
+  const Outcome nothing =
+      kinecal("identify " + right + "--config out/config.yaml --hold tracker_frame,smr -o no.yaml");
+  EXPECT_EQ(nothing.code, 2) << nothing.err;
+  EXPECT_THAT(nothing.out, AllOf(HasSubstr("these samples support none of them: nothing is freed"),
+                                 HasSubstr("no.yaml was not written: no pose is unknown")));
+  EXPECT_FALSE(fs::exists(folder_ / "no.yaml"));
+}
+
 TEST_F(IdentifyProgram, RefusesSamplesOfAnotherRobot) {
   const std::string own = read("ur5e.urdf");
   for (const auto& [length, sentence] :

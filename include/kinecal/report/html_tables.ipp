@@ -143,7 +143,7 @@ namespace kinecal::detail {
          "would "
          "rise without this one alone, in standard errors, and what would explain the same in "
          "place of it.</p>\n" +
-         html_table(rows, "lnnnnntnl");
+         html_table(rows, "tnnnnntnl");
 }
 
 [[nodiscard]] inline std::string step_figures(const ReportData& data) {

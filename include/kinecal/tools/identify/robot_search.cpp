@@ -10,6 +10,7 @@
 #include <set>
 
 #include "kinecal/config/assemble.hpp"
+#include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/nearest_name.hpp"
@@ -111,6 +112,8 @@ RobotSearch search_robot(const Config& config, const Robot& robot, std::span<con
   detail::hold_in_search(limits.hold, problem, all.task);
   all.found = identify(calibration, samples, all.task.base, all.task.candidates);
   all.config = identified_config(config, all.task, all.found, problem);
+  Diagnostics of_others;  // what is not free any more
+  hold_parameters(all.config, limits.hold, of_others);
   return all;
 }
 
