@@ -158,13 +158,11 @@ PoseSelection select_poses(const PoseCandidates& candidates, const SelectOptions
 PlainMatrix goal_of_parameters(const PoseCandidates& candidates, const std::vector<int>& columns) {
   if (candidates.information.empty()) throw std::invalid_argument("there are no poses to choose");
   const Eigen::Index n = candidates.information.front().rows();
-  Eigen::MatrixXd goal = Eigen::MatrixXd::Zero(n, n);
-  for (const int column : columns) {
-    for (const PlainMatrix& of : candidates.information) {
-      goal(column, column) +=
-          of.matrix()(column, column) / static_cast<double>(candidates.information.size());
-    }
+  Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(n, n), goal = mean;
+  for (const PlainMatrix& of : candidates.information) {
+    mean += of.matrix() / static_cast<double>(candidates.information.size());
   }
+  for (const int column : columns) goal(column, column) = mean(column, column);
   return goal;
 }
 
