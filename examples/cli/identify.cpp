@@ -21,7 +21,7 @@ namespace kinecal::cli {
 namespace {
 
 /// The same inputs and reports, for the calibration with what was found.
-CalibrateOptions calibration_of(const IdentifyOptions& options) {
+CalibrateOptions for_calibration(const IdentifyOptions& options) {
   CalibrateOptions all;
   static_cast<InputOptions&>(all) = options;
   all.nothing_free = NothingFree::is_allowed;  // it always searches
@@ -70,7 +70,7 @@ int identify(const IdentifyOptions& options) {
   std::vector<std::string> inputs = options.samples;
   inputs.insert(inputs.end(), {options.urdf, options.config});
   check_output(options.output, inputs, options.force);
-  CalibrateOptions calibration = calibration_of(options);
+  CalibrateOptions calibration = for_calibration(options);
   check_reports(calibration);
   Input input = read_input(calibration);
   print_or_throw(input.diagnostics);

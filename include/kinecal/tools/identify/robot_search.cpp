@@ -51,7 +51,7 @@ namespace {
 }
 
 /// What explains the same: first what no sample tells apart.
-[[nodiscard]] std::string alike_text(const ReportedSearchStep& step) {
+[[nodiscard]] std::string same_explanations(const ReportedSearchStep& step) {
   std::string text;
   if (!step.inseparable.empty()) {
     text += fmt::format("no sample like these tells {} from {}: either is as good\n", step.freed,
@@ -147,7 +147,7 @@ std::string search_text(const RobotSearch& search) {
   }
   text += table.str();
   for (const ReportedSearchStep& step : all.steps) {
-    if (!step.alike.empty()) text += detail::alike_text(step);
+    if (!step.alike.empty()) text += detail::same_explanations(step);
   }
   return text;
 }
