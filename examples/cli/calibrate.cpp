@@ -24,6 +24,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "scene.hpp"
+#include "search.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {
@@ -60,7 +61,9 @@ std::vector<OutputFile> copies(const ResultOptions& options, const Input& input)
   if (!same_file(folder / kOriginalUrdf, options.urdf)) {
     files.push_back({kOriginalUrdf, input.urdf_text});
   }
-  if (!same_file(folder / kConfigCopy, options.config)) {
+  if (!input.found_config.empty()) {
+    files.push_back({kConfigCopy, input.found_config});
+  } else if (!same_file(folder / kConfigCopy, options.config)) {
     files.push_back({kConfigCopy, input.config_text});
   }
   return files;
@@ -136,8 +139,13 @@ SolveOptions solve_options(const CalibrateOptions& options) {
 }
 
 /// The inputs as `kinecal plan` takes them; empty if it needs more: a URDF, or intrinsics.
-std::string inputs_of_plan(const CalibrateOptions& options) {
-  return options.urdf.empty() || !options.cameras.empty() ? "" : input_options(options);
+std::string inputs_of_plan(const CalibrateOptions& options, const Input& input) {
+  InputOptions of = options;
+  if (input.is_searched && !options.output.empty()) {
+    of.config = (std::filesystem::path(options.output) / kConfigCopy).string();
+  }
+  const bool is_complete = !of.urdf.empty() && !of.config.empty() && of.cameras.empty();
+  return is_complete ? input_options(of) : "";
 }
 
 /// Checks before the work begins that the results can be written.
@@ -154,22 +162,35 @@ std::optional<OutputFolder> output_folder(const CalibrateOptions& options) {
   return std::optional<OutputFolder>(std::in_place, options.output);
 }
 
-/// Calibrates and judges, with a line of progress on a terminal.
-Fit fit_and_judge(const CalibrateOptions& options, Input& input) {
+/// Calibrates and judges, with a line of progress on a terminal; nothing if nothing is free and the samples support nothing.
+std::optional<Fit> fit_and_judge(const CalibrateOptions& options, Input& input) {
   std::optional<ProgressLine> line(std::in_place);
   SolveOptions solving = solve_options(options);
   solving.meter = line->meter();
-  Fit fitted = fit(input, std::move(input.calibration), options, progress_line(), solving);
+  Fit fitted;
+  if (input.is_searched) {
+    SearchedFit found = search_and_fit(input, options, false, progress_line(), solving);
+    end_progress_line();
+    print(input.diagnostics);
+    if (!options.manner.quiet && !options.manner.json) {
+      show(search_summary(found, input) + "\n", options.manner);
+    }
+    if (found.is_empty()) return std::nullopt;
+    input.found_config = std::move(found.config);
+    fitted = std::move(found.fit);
+  } else {
+    fitted = fit(input, std::move(input.calibration), options, progress_line(), solving);
+  }
   line.reset();
   end_progress_line();
   judge_causes(
       {input.config, input.robot, input.urdf_text, input.urdf, fitted.samples, fitted.calibration},
       fitted.findings);
-  if (fitted.findings.judgement.causes == 0) {  // else a cause is named already
+  if (fitted.findings.judgement.causes == 0 && !input.is_searched) {  // else it is named already
     fitted.findings.helps = would_help(input.config, input.robot, fitted.samples,
                                        fitted.calibration, fitted.findings.result);
   }
-  fitted.findings.call = {options.command, inputs_of_plan(options),
+  fitted.findings.call = {options.command, inputs_of_plan(options, input),
                           options.dry_run ? "" : options.output, KINECAL_VERSION,
                           read_files(options, input)};
   return fitted;
@@ -215,7 +236,13 @@ int calibrate(const CalibrateOptions& options) {
   if (!input.diagnostics.errors.empty()) return kBadInput;
   const double reading = seconds_since(start);
 
-  const Fit fitted = fit_and_judge(options, input);
+  const std::optional<Fit> fit_of_input = fit_and_judge(options, input);
+  if (!fit_of_input) {
+    say(stderr,
+        "error: nothing is free, and these samples support no parameter: no results written\n");
+    return kNotUsable;
+  }
+  const Fit& fitted = *fit_of_input;
   const double fitting = seconds_since(start) - reading;
   const Findings& findings = fitted.findings;
   const Manner& manner = options.manner;

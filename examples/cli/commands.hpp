@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/config/config.hpp"
 #include "kinecal/config/doubts/rising.hpp"
 #include "terminal.hpp"
 
@@ -27,6 +28,9 @@ struct InputOptions {
   std::vector<int> exclude;             ///< samples to leave out, from 1
   Recorded recorded = Recorded::after;  ///< the samples, and <calibration rising>
   bool is_part = false;                 ///< there are more samples: these may be few
+  /// Unless it is an error, a configuration may be missing, and what is free is searched for: always if it is allowed,
+  /// else if the configuration leaves it open.
+  NothingFree nothing_free = NothingFree::is_error;
 };
 
 /// What is calibrated, and where the result goes.
@@ -86,10 +90,13 @@ struct IdentifyOptions : InputOptions {
   std::string output = "identified.yaml";  ///< file
   bool geometry_only = false;              ///< no joint models
   bool force = false;                      ///< replace it
+  std::vector<std::string> reports;        ///< files: a page if it ends in .html, else JSON
+  std::string command = {};                ///< as the user typed it, for the report
+  std::vector<std::string> mesh_paths;     ///< where the URDF's packages may be
 };
 
 /// Finds out which parameters of a robot are wrong, and writes a configuration that frees them.
-int identify(IdentifyOptions options);
+int identify(const IdentifyOptions& options);
 
 struct DetectOptions {
   std::string config;                 ///< capture.yaml
@@ -187,7 +194,8 @@ struct StudyFiles {
   std::string scene;                 ///< file; empty: defaults
   std::string target;                ///< empty: the scene's
   int seed = 0;                      ///< zero: the scene's
-  std::string command = {};          ///< as the user typed it, for the page
+  std::vector<std::string> tell_apart = {};  ///< two candidates of identify; empty: none
+  std::string command = {};                  ///< as the user typed it, for the page
 };
 
 struct StudyOptions : StudyFiles {

@@ -3,183 +3,104 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <map>
-#include <numbers>
-#include <set>
-#include <utility>
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/config/assemble.hpp"
-#include "kinecal/config/config_to_yaml.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/results/standard_output.hpp"
 #include "kinecal/files/text_file.hpp"
-#include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/report/findings.hpp"
-#include "kinecal/report/text.hpp"
-#include "kinecal/text/counted.hpp"
-#include "kinecal/text/reading.hpp"
 #include "kinecal/text/shell_word.hpp"
-#include "kinecal/tools/identify/identified_config.hpp"
-#include "kinecal/tools/init/answers_from_samples.hpp"
-#include "kinecal/tools/init/initial_config.hpp"
+#include "kinecal/tools/identify/tell_apart.hpp"
 #include "output_file.hpp"
+#include "report.hpp"
+#include "search.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
 
-/// The configuration that samples suggest: their sensors, and the poses that the URDF does not have.
-void propose_configuration(IdentifyOptions& options) {
-  Diagnostics diagnostics;
-  const Recording recording = read_recordings(options.samples, diagnostics);
-  diagnostics.throw_if_errors();  // warnings come when they are read again
-  if (options.urdf.empty() && recording.urdf.empty()) {
-    throw InputError("--urdf: is required, because the samples contain no /robot_description");
-  }
-  const Robot robot = options.urdf.empty() ? parse_urdf(recording.urdf, "/robot_description")
-                                           : read_urdf(options.urdf);
-  try {
-    options.config_text = initial_config(robot, answers_from_samples(robot, recording.samples, {}));
-  } catch (const InputError& error) {
-    throw InputError(
-        "the samples do not tell what observes what; give --config, as of 'kinecal init'.  " +
-        std::string(error.what()));
-  }
-}
-
-/// What was searched and found.
-struct Search {
-  IdentifyTask task;
-  Identified found;
-  Config config;  ///< that frees what was found
-};
-
-Search search(const Config& config, const Robot& robot, std::span<const Sample> samples,
-              bool geometry_only) {
-  Search all;
-  Diagnostics diagnostics;
-  Calibration calibration =
-      assemble(with_all_candidates(config, robot, samples), robot, samples, diagnostics);
-  diagnostics.throw_if_errors();
-  const AnyProblem& problem = *calibration.steps.front().problem;
-  all.task = identify_task(config, problem, samples, geometry_only);
-  all.found = identify(calibration, samples, all.task.base, all.task.candidates);
-  all.config = identified_config(config, all.task, all.found, problem);
+/// The same inputs and reports, for the calibration with what was found.
+CalibrateOptions for_calibration(const IdentifyOptions& options) {
+  CalibrateOptions all;
+  static_cast<InputOptions&>(all) = options;
+  all.nothing_free = NothingFree::is_allowed;  // it always searches
+  all.reports = options.reports;
+  all.command = options.command;
+  all.mesh_paths = options.mesh_paths;
   return all;
 }
 
-/// Judges what was found as 'kinecal calibrate' will.
-JudgedResult judged(const Search& search, const Input& input) {
-  if (free_parameters(search.config.steps.front()).empty()) return {};
-  Diagnostics diagnostics;
-  Calibration calibration = assemble(search.config, input.robot, input.samples, diagnostics);
-  diagnostics.throw_if_errors();
-  ProcedureOptions options;
-  options.doubts = input.diagnostics.doubts;
-  return calibrate_and_judge(calibration, input.samples, options);
+/// True if a command that is to be pasted can read these inputs and this output.
+bool are_files(const std::vector<std::string>& inputs, const std::string& output) {
+  return std::none_of(inputs.begin(), inputs.end(), detail::is_stream) &&
+         !is_standard_output(output);
 }
 
-/// The name of a step: what it freed.
-std::string name_of(const Search& search, const IdentifyStep& step) {
-  if (step.candidate < 0) return "(only unknown poses)";
-  return search.task.candidates[static_cast<std::size_t>(step.candidate)].name;
+/// The name of a candidate for --tell-apart: one of several parameters is that of its first.
+std::string plain_name(const std::string& name) {
+  return name.substr(0, name.find(','));
 }
 
-std::string steps_text(const Search& search) {
-  const Identified& found = search.found;
-  const std::string unit = reading_unit(found.unit);
-  TextTable table({"freed", "fitted", "held out", "regions held out", "unit", "times its +-"});
-  for (const IdentifyStep& step : found.steps) {
-    const auto text = [&](double value) { return in_reading_unit(value, found.unit); };
-    table.add({name_of(search, step), text(step.fitted), text(step.held_out),
-               step.region > 0.0 ? text(step.region) : "-", unit,
-               step.candidate < 0 ? "" : fmt::format("{:.1f}", std::abs(step.certainty))});
+/// The poses that would decide between what was freed and the first that looks alike, as a command; empty if nothing does.
+std::string deciding_command(const SearchedFit& found, const InputOptions& next) {
+  if (next.urdf.empty()) return "";
+  for (const ReportedSearchStep& step : found.fit.findings.search.steps) {
+    const auto other =
+        std::find_if(step.alike.begin(), step.alike.end(), [&](const std::string& name) {
+          return std::find(step.inseparable.begin(), step.inseparable.end(), name) ==
+                 step.inseparable.end();
+        });
+    if (other == step.alike.end()) continue;
+    const std::string names = plain_name(step.freed) + "," + plain_name(*other);
+    InputOptions inputs = next;
+    if (!sees_everywhere(found.search.config)) inputs.samples.clear();  // views are generated
+    inputs.cameras.clear();
+    return fmt::format(
+        "which poses would decide between what explains the same:\n"
+        "  kinecal select-poses {} --tell-apart {} --count 10 -o poses.yaml\n",
+        input_options(inputs), shell_word(names));
   }
-  std::string text;
-  for (const auto& [k, turn] : found.turned) {
-    text += fmt::format("the zero of '{}' is {:+.0f} deg off: the search begins there\n\n",
-                        search.task.candidates[static_cast<std::size_t>(k)].name,
-                        turn * 180.0 / std::numbers::pi);
-  }
-  text += table.str();
-  for (const IdentifyStep& step : found.steps) {
-    if (step.alike.empty()) continue;
-    std::string others;
-    constexpr std::size_t kShown = 4;
-    for (std::size_t i = 0; i < std::min(kShown, step.alike.size()); ++i) {
-      const auto k = static_cast<std::size_t>(step.alike[i]);
-      others += (i == 0 ? "" : ", ") + search.task.candidates[k].name;
-    }
-    if (step.alike.size() > kShown)
-      others += fmt::format(" and {} more", step.alike.size() - kShown);
-    text +=
-        fmt::format("in place of {}, these explain the same: {}\n", name_of(search, step), others);
-  }
-  return text;
-}
-
-/// Comments of the configuration: what each parameter bought.
-std::map<std::string, std::string> comments(const Search& search) {
-  std::map<std::string, std::string> why;
-  const Identified& found = search.found;
-  for (std::size_t i = 1; i < found.steps.size(); ++i) {
-    const auto k = static_cast<std::size_t>(found.steps[i].candidate);
-    for (const int p : search.task.candidates[k].parameters) {
-      why.emplace(found.result.table[p].name,
-                  fmt::format("held out {} -> {}", reading(found.steps[i - 1].held_out, found.unit),
-                              reading(found.steps[i].held_out, found.unit)));
-    }
-  }
-  return why;
+  return "";
 }
 
 }  // namespace
 
-int identify(IdentifyOptions options) {
+int identify(const IdentifyOptions& options) {
   std::vector<std::string> inputs = options.samples;
   inputs.insert(inputs.end(), {options.urdf, options.config});
   check_output(options.output, inputs, options.force);
-  const bool is_proposed = options.config.empty();
-  if (is_proposed) propose_configuration(options);
-  Input input = read_input(options);
+  CalibrateOptions calibration = for_calibration(options);
+  check_reports(calibration);
+  Input input = read_input(calibration);
   print_or_throw(input.diagnostics);
-  if (input.config.steps.size() != 1) {
-    throw InputError(options.config + ": has " + counted(input.config.steps.size(), "step") +
-                     "; identify searches in one");
-  }
-  if (is_proposed) {  // its sigmas are guesses
-    for (BlockConfig& block : input.config.steps.front().error_blocks) block.sigma.reset();
-  }
-  Search all = search(input.config, input.robot, input.samples, options.geometry_only);
-  Findings findings{judged(all, input)};
-  if (!findings.left_out.empty()) {  // again, without bad samples
-    all = search(input.config, input.robot, used_samples(findings, input.samples),
-                 options.geometry_only);
-    findings = Findings{judged(all, input)};
-  }
-  say("Robot '{}', {}: {} may be wrong, {} of them these samples support\n\n{}", input.robot.name(),
-      counted(input.samples.size(), "sample"), counted(all.task.candidates.size(), "parameter"),
-      all.found.chosen.size(), steps_text(all));
+  SearchedFit found = search_and_fit(input, calibration, options.geometry_only, {}, {});
+  input.diagnostics.warnings.clear();  // calibrate repeats them: what a URDF cannot hold
+  print(input.diagnostics);
+  say("{}", search_summary(found, input));
+  Findings& findings = found.fit.findings;
   for (const std::string& reason : findings.judgement.reasons) say("  - {}\n", reason);
+  if (found.is_empty()) {
+    say("{} was not written: no pose is unknown, and these samples support no parameter\n",
+        options.output);
+    return kNotUsable;
+  }
+  InputOptions next = calibration;
+  next.config = options.output;
+  findings.call = {options.command, input_options(next), "", KINECAL_VERSION,
+                   read_files(calibration, input)};
+  write_reports(calibration, input, found.fit);
   if (findings.judgement.verdict == Grade::do_not_use) {
     say("{} · {} was not written\n", findings_line(findings), options.output);
     return kNotUsable;
   }
-  write_text_file(
-      options.output,
-      config_to_yaml(
-          all.config,
-          "What these samples support; 'kinecal identify' found it.  With each parameter, the\n"
-          "error on poses held out before and after it was freed.",
-          comments(all)));
-  say("{} · {}\n", findings_line(findings), options.output);
-  if (std::any_of(inputs.begin(), inputs.end(), detail::is_stream) ||
-      is_standard_output(options.output))
-    return kDone;
-  options.config = options.output;
-  say("next: kinecal calibrate {} --output calibrated\n", input_options(options));
+  write_text_file(options.output, found.config);
+  std::string line = findings_line(findings) + " · " + options.output;
+  for (const std::string& report : options.reports) line += " · " + report;
+  say("{}\n", line);
+  if (!are_files(inputs, options.output)) return kDone;
+  say("{}", deciding_command(found, next));
+  say("next: kinecal calibrate {} --output calibrated\n", input_options(next));
   return kDone;
 }
 

@@ -18,6 +18,7 @@
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/shell_word.hpp"
+#include "kinecal/tools/identify/open_config.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
 
@@ -48,12 +49,23 @@ std::vector<Sample> used_samples(const std::vector<Sample>& samples,
   return used;
 }
 
-/// Assembles what was read, and doubts it.
-void assemble_input(Input& input, const InputOptions& options) {
-  if (options.recorded == Recorded::before) {
-    add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
+/// What a search begins with: the unknown poses are free, and a note says that there is a search.
+void leave_open(Input& input, const InputOptions& options) {
+  input.is_searched = true;
+  if (options.nothing_free == NothingFree::without_lists) {
+    input.diagnostics.notes.push_back(
+        (options.config.empty() ? "there is no --config; the samples suggest one"
+                                : options.config + ": nothing is free") +
+        ": what these samples support is searched for, as 'kinecal identify' does");
   }
-  choose_images(input.config, input.robot, input.samples, input.diagnostics);
+  if (input.config.steps.size() == 1 && frees_nothing(input.config)) {
+    free_unknown_poses(input.config, input.robot, input.samples);
+  }
+}
+
+}  // namespace
+
+void assemble_input(Input& input, const InputOptions& options) {
   input.calibration = assemble(input.config, input.robot, input.samples, input.diagnostics);
   const auto doubt = [&](std::span<const Sample> samples) {
     find_doubts({input.config, input.robot, input.urdf_text, input.urdf, samples, input.calibration,
@@ -66,8 +78,6 @@ void assemble_input(Input& input, const InputOptions& options) {
     doubt(used_samples(input.samples, options.exclude));
   }
 }
-
-}  // namespace
 
 Recording read_recordings(const std::vector<std::string>& files, Diagnostics& diagnostics) {
   Recording all;
@@ -109,17 +119,26 @@ Input read_input(const InputOptions& options) {
     robot = read_robot([&] { return read_urdf_text(options.urdf); });
   }
   const std::size_t before = diagnostics.errors.size();
-  auto configuration = attempt(
-      [&] {
-        input.config_text =
-            options.config.empty() ? options.config_text : detail::read_yaml_text(options.config);
-        const bool is_proposed = options.config.empty();
-        return parse_config(input.config_text, is_proposed ? "(proposed)" : options.config,
-                            diagnostics);
-      },
-      diagnostics);
+  const bool may_be_open = options.nothing_free != NothingFree::is_error;
+  const bool is_proposed = may_be_open && options.config.empty() && options.config_text.empty();
+  const auto read_configuration = [&]() -> std::optional<Config> {
+    return attempt(
+        [&] {
+          input.config_text =
+              options.config.empty() ? options.config_text : detail::read_yaml_text(options.config);
+          return parse_config(input.config_text,
+                              options.config.empty() ? "(proposed)" : options.config, diagnostics,
+                              options.nothing_free);
+        },
+        diagnostics);
+  };
+  std::optional<Config> configuration;
+  if (!is_proposed) configuration = read_configuration();
   const bool configuration_is_good = diagnostics.errors.size() == before;
-  if (configuration) hold_parameters(*configuration, options.hold, diagnostics);
+  const bool is_open =
+      may_be_open && (is_proposed || options.nothing_free == NothingFree::is_allowed ||
+                      (configuration && frees_nothing(*configuration)));
+  if (configuration && !is_open) hold_parameters(*configuration, options.hold, diagnostics);
   Recording recording = read_recordings(options.samples, diagnostics);
   input.samples = std::move(recording.samples);
   if (recording.urdf.empty()) recording.urdf = options.urdf_text;
@@ -135,11 +154,19 @@ Input read_input(const InputOptions& options) {
   for (const std::string& camera : options.cameras) {
     attempt([&] { return set_camera(input.samples, camera, diagnostics), true; }, diagnostics);
   }
+  if (robot && is_proposed && diagnostics.errors.size() == before) {
+    configuration =
+        attempt([&] { return config_from_samples(*robot, input.samples); }, diagnostics);
+  }
   if (!robot || !configuration) return input;
   input.robot = *robot;
   input.config = *configuration;
   if (diagnostics.errors.size() == before) {
-    assemble_input(input, options);
+    if (options.recorded == Recorded::before) {
+      add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
+    }
+    choose_images(input.config, input.robot, input.samples, diagnostics);
+    is_open ? leave_open(input, options) : assemble_input(input, options);
     return input;
   }
   // Blocks of a wrong configuration are left out; the rest is still checked against the robot.
@@ -152,11 +179,12 @@ Input read_input(const InputOptions& options) {
 
 std::string input_options(const InputOptions& options) {
   std::string text;
-  if (!options.urdf.empty()) text += "--urdf " + shell_word(options.urdf) + " ";
-  text += "--config " + shell_word(options.config) + " --samples";
+  if (!options.urdf.empty()) text += " --urdf " + shell_word(options.urdf);
+  if (!options.config.empty()) text += " --config " + shell_word(options.config);
+  if (!options.samples.empty()) text += " --samples";
   for (const std::string& file : options.samples) text += " " + shell_word(file);
   for (const std::string& camera : options.cameras) text += " --camera " + shell_word(camera);
-  return text;
+  return text.empty() ? text : text.substr(1);
 }
 
 void print_or_throw(const Diagnostics& diagnostics) {

@@ -17,9 +17,11 @@ namespace kinecal::cli {
 struct Input {
   Robot robot;
   Config config;
-  std::string urdf;         ///< name of the URDF in messages: its file or topic
-  std::string urdf_text;    ///< its content
-  std::string config_text;  ///< content of the configuration
+  std::string urdf;          ///< name of the URDF in messages: its file or topic
+  std::string urdf_text;     ///< its content
+  std::string config_text;   ///< content of the configuration
+  std::string found_config;  ///< the one that frees what a search found; empty: there was none
+  bool is_searched = false;  ///< what is free is searched for: nothing is assembled yet
   std::vector<Sample> samples;
   Calibration calibration;
   Diagnostics diagnostics;
@@ -27,6 +29,9 @@ struct Input {
 
 /// Reads and assembles everything; errors go to Input::diagnostics.
 [[nodiscard]] Input read_input(const InputOptions& options);
+
+/// Assembles what was read, and doubts it: for an input whose free parameters were searched for.
+void assemble_input(Input& input, const InputOptions& options);
 
 /// Reads samples from several files of any format, and the URDF from the first that has one.  Errors
 /// go to the diagnostics.

@@ -120,8 +120,24 @@ void add_calibrate_log(CLI::App& command, ResultOptions& options) {
   add_results(command, options);
 }
 
+void add_mesh_path(CLI::App& command, std::vector<std::string>& paths) {
+  command
+      .add_option("--mesh-path", paths,
+                  "folder of the URDF's packages, or of one of them, in which meshes are; beside "
+                  "ROS_PACKAGE_PATH, AMENT_PREFIX_PATH and the folders above the URDF")
+      ->type_name("DIR");
+}
+
 void add_calibrate(CLI::App& command, CalibrateOptions& options) {
+  options.nothing_free = kinecal::NothingFree::without_lists;
   add_input(command, options)->required();
+  command.get_option("--config")
+      ->required(false)
+      ->description(
+          "what to calibrate: a configuration of robot_calibration, ROS 1 or ROS 2; without one, "
+          "or "
+          "if it has neither free_params nor free_frames, what is free is searched for, as by "
+          "'kinecal identify'");
   command.add_option("--output", options.output, "folder for the results")->type_name("DIR");
   add_results(command, options);
   command.add_flag("--dry-run", options.dry_run, "calibrate, but write nothing");
@@ -149,11 +165,7 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
                   "write the robot before and after, and what was measured, for Foxglove and "
                   "Lichtblick (.mcap), whatever the verdict")
       ->type_name("FILE");
-  command
-      .add_option("--mesh-path", options.mesh_paths,
-                  "folder of the URDF's packages, or of one of them, in which meshes are; beside "
-                  "ROS_PACKAGE_PATH, AMENT_PREFIX_PATH and the folders above the URDF")
-      ->type_name("DIR");
+  add_mesh_path(command, options.mesh_paths);
   command
       .add_option("--exclude", options.exclude,
                   "leave out these samples: numbers from 1, in the order of the files")
@@ -193,12 +205,26 @@ void add_identify(CLI::App& command, IdentifyOptions& options) {
       ->type_name("FILE");
   add_samples(command, options.samples)->required();
   add_cameras(command, options.cameras);
+  command
+      .add_option("--hold", options.hold,
+                  "parameters, frames or candidates that keep their initial values")
+      ->delimiter(',')
+      ->type_name("NAME");
   command.add_flag("--geometry-only", options.geometry_only,
                    "without gear ratios and eccentric encoders, which a URDF cannot hold");
   command.add_option("-o,--output", options.output, "the configuration to write")
       ->type_name("FILE")
       ->capture_default_str();
   command.add_flag("--force", options.force, "replace the file");
+  command
+      .add_option(
+          "--report", options.reports,
+          "write a report of the calibration with what was found, and of the search, whatever the "
+          "verdict: a page to look at if the name ends in .html, else report.json; may be given "
+          "twice")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  add_mesh_path(command, options.mesh_paths);
 }
 
 void add_init(CLI::App& command, InitOptions& options) {
@@ -394,6 +420,13 @@ void add_select_poses(CLI::App& command, SelectPosesOptions& options) {
                   "treat poses as equal if every joint is within this fraction of its range")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  command
+      .add_option("--tell-apart", options.tell_apart,
+                  "two candidates of 'kinecal identify' that explain the same: the poses that show "
+                  "which one is wrong; with --samples of a tracker, new poses between those of the "
+                  "samples")
+      ->delimiter(',')
+      ->type_name("A,B");
   command.add_option("--failures", options.failures, "poses that may fail")
       ->check(CLI::Range(0, 100))
       ->capture_default_str()
@@ -882,7 +915,7 @@ void add_commands(Commands& commands, const std::string& line) {
   commands.add<IdentifyOptions>(
       "identify",
       "find out which parameters of the robot are wrong, and write a configuration that frees them",
-      add_identify, identify);
+      add_identify, with_line(line, identify));
   commands.add<InputOptions>(
       "check",
       "check the input without solving: errors, warnings, what the samples cannot determine",

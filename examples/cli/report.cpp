@@ -121,8 +121,8 @@ std::string page(const CalibrateOptions& options, const Input& input, const Fit&
 std::vector<std::pair<std::string, std::string>> read_files(const CalibrateOptions& options,
                                                             const Input& input) {
   std::vector<std::pair<std::string, std::string>> files = {
-      {"URDF", options.urdf.empty() ? input.urdf : options.urdf},
-      {"configuration", options.config}};
+      {"URDF", options.urdf.empty() ? input.urdf : options.urdf}};
+  if (!options.config.empty()) files.emplace_back("configuration", options.config);
   for (const std::string& samples : options.samples) files.emplace_back("samples", samples);
   for (const std::string& camera : options.cameras) {
     files.emplace_back("camera", camera_file(camera));

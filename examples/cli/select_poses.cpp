@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "explanations.hpp"
 #include "kinecal/study/study_summary.hpp"
 #include "kinecal/text/counted.hpp"
 #include "output_file.hpp"
@@ -140,13 +141,16 @@ int select_poses(const SelectPosesOptions& options) {
   check_options(options);
   const std::unique_ptr<StudyInput> input = read_study(options, options.candidates);
   drop_poses_of_have(*input, options.least_distance);
-  const PoseChoice choice = pose_choice(*input);
+  PoseChoice choice = pose_choice(*input);
+  const bool tells_apart = !options.tell_apart.empty();
+  if (tells_apart) choose_between(*input, choice);
   const PoseSelection selection = select(options, choice);
   const std::vector<int> order = short_order(choice, selection.chosen);
   std::optional<ProgressLine> line(std::in_place);
   const std::string text =
-      selected_text(*input, choice, selection.chosen, line->meter()) +
-      comparison_text(options, *input, choice, selection.chosen, line->meter());
+      tells_apart ? explanations_text(*input, choice, selection.chosen)
+                  : selected_text(*input, choice, selection.chosen, line->meter()) +
+                        comparison_text(options, *input, choice, selection.chosen, line->meter());
   line.reset();
   say("{}  in this order: {} with the URDF's speeds and 3 s a stop\n", text,
       duration_text(session_seconds(choice, order)));

@@ -3,6 +3,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -10,7 +13,9 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/study/seeded_random.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/tools/identify/tell_apart.hpp"
 #include "kinecal/tools/simulation/pose_samples.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/compared_frames.hpp"
@@ -83,16 +88,78 @@ ParameterTable take_poses(const StudyFiles& files, int count, StudyInput& input)
   return made.values;
 }
 
+/// True if all features of a sample are numbers.
+bool is_finite(const Sample& sample) {
+  return std::all_of(sample.observations.begin(), sample.observations.end(), [](const auto& of) {
+    return std::all_of(of.features.begin(), of.features.end(),
+                       [](const Feature& feature) { return feature.point.allFinite(); });
+  });
+}
+
+/// Adds new poses before the recorded samples, which exist already: positions between those that were recorded, and
+/// the features of recorded samples.
+void add_poses_between(int count, std::uint64_t seed, StudyInput& input) {
+  std::vector<Sample> recorded;
+  std::vector<CapturePose> poses, known;
+  for (std::size_t i = 0; i < input.samples.size(); ++i) {  // the others say nothing
+    if (!is_finite(input.samples[i])) continue;
+    recorded.push_back(input.samples[i]);
+    known.push_back(input.poses[i]);
+  }
+  if (recorded.empty()) throw InputError("--samples: no sample has features that are numbers");
+  std::vector<Sample> made;
+  SeededRandom random(seed);
+  std::map<std::string, std::pair<double, double>> ranges;
+  for (const Sample& sample : recorded) {
+    for (std::size_t j = 0; j < sample.joint_names.size(); ++j) {
+      const double at = sample.joint_positions[j];
+      const auto [range, is_new] = ranges.try_emplace(sample.joint_names[j], at, at);
+      range->second = {std::min(range->second.first, at), std::max(range->second.second, at)};
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    Sample sample = recorded[static_cast<std::size_t>(i) % recorded.size()];
+    for (std::size_t j = 0; j < sample.joint_names.size(); ++j) {
+      const auto& [low, high] = ranges.at(sample.joint_names[j]);
+      sample.joint_positions[j] = low < high ? random.uniform(low, high) : low;
+    }
+    sample.source = fmt::format("generated pose {}", i + 1);
+    poses.push_back({sample.joint_names, sample.joint_positions, {}, sample.source});
+    made.push_back(std::move(sample));
+  }
+  input.have = recorded.size();
+  made.insert(made.end(), recorded.begin(), recorded.end());
+  poses.insert(poses.end(), known.begin(), known.end());
+  input.samples = std::move(made);
+  input.poses = std::move(poses);
+}
+
+/// Frees two explanations that are to be told apart; with recorded samples, adds poses where no camera must see them.
+/// @returns  the recorded samples, if poses were added
+std::vector<Sample> free_both(const StudyFiles& files, int poses, StudyInput& input) {
+  Explanations both = free_explanations(input.config, input.robot, input.samples, files.tell_apart);
+  input.config = std::move(both.config);
+  input.explanations = std::move(both.parameters);
+  if (files.samples.empty() || !sees_everywhere(input.config)) return {};
+  std::vector<Sample> recorded = input.samples;
+  add_poses_between(poses, static_cast<std::uint64_t>(std::max(1, files.seed)), input);
+  return recorded;
+}
+
 /// The values of a robot without errors: of the configuration; or what recorded samples show.
-void set_drawn(const StudyFiles& files, const ParameterTable& places, StudyInput& input) {
+/// @param recorded  by the configuration that was given
+void set_drawn(const StudyFiles& files, const ParameterTable& places, const Calibration& recorded,
+               StudyInput& input) {
   ParameterTable table = input.calibration.table;
   if (!files.samples.empty()) {
-    const CalibrationResult found = kinecal::calibrate(input.calibration);
+    const CalibrationResult found = kinecal::calibrate(recorded);
     if (!found.converged) {
       throw InputError("the samples cannot be calibrated: " + found.termination +
                        "; a study starts from their result");
     }
-    table = found.table;
+    for (const Parameter& parameter : found.table) {
+      if (const int p = table.find(parameter.name); p >= 0) table[p].value = parameter.value;
+    }
   }
   for (const CalibrationStep& step : input.calibration.steps) {
     if (!files.samples.empty()) break;
@@ -196,10 +263,17 @@ std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
   } else {
     take_recorded(files, *input);
   }
+  const Config given = input->config;
+  std::vector<Sample> recorded;
+  if (!files.tell_apart.empty()) recorded = free_both(files, poses, *input);
   Diagnostics of_samples;
   input->calibration = assemble(input->config, input->robot, input->samples, of_samples);
   print_or_throw(of_samples);
-  set_drawn(files, places, *input);
+  std::optional<Calibration> of_recorded;
+  if (!recorded.empty()) {
+    of_recorded.emplace(assemble(given, input->robot, recorded, of_samples));
+  }
+  set_drawn(files, places, of_recorded ? *of_recorded : input->calibration, *input);
   if (files.seed > 0) input->plan.setup.seed = static_cast<std::uint64_t>(files.seed);
   set_up(files, *input);
   input->command = files.command;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -33,6 +34,8 @@ struct StudyInput {
   bool keep_ruined = true;  ///< calibrate with all samples
   /// Values of all parameters by the configuration: those of its simulated target can differ.
   std::vector<double> configured;
+  /// Parameters of two explanations, which are free, too; empty: none.
+  std::array<std::vector<std::string>, 2> explanations = {};
 };
 
 /// Reads everything.  Prints warnings.

@@ -466,6 +466,26 @@ TEST(ReadConfig, NoModelsNoBlocksAndNothingFreeAreErrors) {
               ElementsAre(HasSubstr("calibrate.yaml:5: step 'calibrate': nothing is free")));
 }
 
+TEST(ReadConfig, NothingMayBeFreeWhereASearchFollows) {
+  const auto messages = [](const std::string& text, NothingFree nothing_free) {
+    Diagnostics diagnostics;
+    (void)parse_config(text, "calibrate.yaml", diagnostics, nothing_free);
+    return diagnostics.errors;
+  };
+  const std::string open =
+      "models:\n - {name: arm, type: chain3d, frame: tip}\n"
+      " - {name: eye, type: camera3d, frame: head}\n"
+      "error_blocks:\n - {name: both, type: chain3d_to_chain3d, model_a: arm, model_b: eye}\n";
+  const std::string empty = open + "free_params: []\n";
+  const auto is_refused =
+      ElementsAre(HasSubstr("nothing is free; name parameters under 'free_params' or frames under "
+                            "'free_frames', or let 'kinecal identify' find them"));
+  EXPECT_THAT(messages(open, NothingFree::is_error), is_refused);
+  EXPECT_THAT(messages(open, NothingFree::without_lists), testing::IsEmpty());
+  EXPECT_THAT(messages(empty, NothingFree::without_lists), is_refused);
+  EXPECT_THAT(messages(empty, NothingFree::is_allowed), testing::IsEmpty());
+}
+
 TEST(ReadConfig, NumberOfIterationsIsAPositiveInteger) {
   EXPECT_EQ(read(kRos1).step().max_num_iterations, 1000);
   EXPECT_EQ(read(kRos1 + "max_num_iterations: 50\n").step().max_num_iterations, 50);

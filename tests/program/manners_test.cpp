@@ -154,7 +154,7 @@ TEST_F(Manners, ProposesTheOptionThatWasMeant) {
                                      "mean '--samples'?"));
   EXPECT_THAT(kinecal("check --conifg=b").err, HasSubstr("did you mean '--config'?"));
   EXPECT_THAT(kinecal("rpy 1 2 3 --xyz").err, HasSubstr("'--xyz' is not an option of 'rpy'; "));
-  EXPECT_THAT(kinecal("calibrate --urdf a").err, HasSubstr("--config is required"));
+  EXPECT_THAT(kinecal("check --urdf a").err, HasSubstr("--config is required"));
 }
 
 /// The words of --help that are commands, or options of a command.

@@ -139,6 +139,30 @@ inline void add_steps(ReportData& data) {
   data.steps = {first, second};
 }
 
+inline void add_search(ReportData& data) {
+  data.search.unit = "m";
+  const auto add = [&](const std::string& freed, int parameters, double held_out,
+                       bool is_chosen = true) {
+    data.search.steps.push_back({freed,
+                                 parameters,
+                                 0.94 * held_out,
+                                 held_out,
+                                 0.07 * held_out,
+                                 0.0,
+                                 3.1,
+                                 is_chosen,
+                                 {},
+                                 {}});
+  };
+  add("", 9, 5.2e-3);
+  add("elbow_flex_joint", 10, 1.9e-3);
+  add("shoulder_lift_joint", 11, 9.5e-4);
+  add("wrist_flex_joint_eccentric_sin, wrist_flex_joint_eccentric_cos", 13, 5.1e-4);
+  add("wrist_flex_joint_x", 14, 4.6e-4);
+  add("wrist_roll_joint_gear_ratio", 15, 4.65e-4, false);
+  data.search.steps[2].alike = {"shoulder_lift_joint_b", "upperarm_roll_joint_b"};
+}
+
 inline void add_workspace(ReportData& data) {
   for (double x = 0.3; x < 1.2; x += 0.1) {
     for (double y = -0.6; y < 0.65; y += 0.1) {
@@ -171,6 +195,7 @@ inline ReportData report_data(int samples = 100, int features = 4) {
   add_blocks(data, samples, features);
   add_parameters(data);
   add_steps(data);
+  add_search(data);
   add_workspace(data);
   return data;
 }

@@ -13,7 +13,9 @@
 #include "kinecal/solve/statistics.hpp"
 #include "kinecal/study/exact_samples.hpp"
 #include "kinecal/study/seeded_random.hpp"
+#include "kinecal/tools/identify/another_robot.hpp"
 #include "kinecal/tools/identify/identified_config.hpp"
+#include "kinecal/tools/identify/robot_search.hpp"
 #include "kinecal/tools/identify/would_help.hpp"
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
@@ -288,6 +290,46 @@ TEST(Identify, FindsAZeroThatIsAQuarterTurnOff) {
   EXPECT_NEAR(turn, 1.5708, 1e-4);
   EXPECT_THAT(found.names(), ElementsAre("wrist_2_joint")) << "by 0.02 rad more";
   EXPECT_LT(arm.error(found.config), 2e-4);
+}
+
+TEST(Identify, NamesWhatNoSampleTellsApart) {
+  SimulatedArm arm(17);
+  arm.spoil(0, "elbow_joint_z", 0.003);  // along the axes of three joints that are parallel
+  const RobotSearch search = search_robot(arm.config(), arm.robot(), arm.samples());
+  ASSERT_EQ(search.found.chosen.size(), 1U);
+  const ReportedSearchStep step = reported(search).steps.at(1);
+  std::vector<std::string> names = step.inseparable;
+  names.push_back(step.freed);
+  EXPECT_THAT(names, testing::IsSupersetOf({"elbow_joint_z", "wrist_1_joint_z"}));
+  EXPECT_THAT(search_text(search),
+              testing::HasSubstr("no sample like these tells " + step.freed + " from "));
+}
+
+TEST(Identify, HasStandardErrorsAndWhatWasTriedAndNotFreed) {
+  SimulatedArm arm(12);
+  arm.spoil(0, "wrist_2_joint", 0.02);
+  const Found found = arm.found();
+  const std::vector<IdentifyStep>& steps = found.identified.steps;
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_EQ(steps[0].parameters + 1, steps[1].parameters);
+  // 100 poses of 3 components: the root of a mean of so many squares is known to 1 / sqrt(600).
+  EXPECT_NEAR(steps[1].deviation / steps[1].held_out, 1.0 / std::sqrt(600.0), 0.02);
+  ASSERT_FALSE(found.identified.beyond.empty());
+  EXPECT_GT(found.identified.beyond.front().held_out, 0.97 * steps[1].held_out);
+  EXPECT_EQ(found.identified.beyond.front().parameters > steps[1].parameters, true);
+}
+
+TEST(Identify, SamplesOfAnotherRobotAreNotExplained) {
+  SimulatedArm arm(21);
+  arm.spoil(0, "elbow_joint_x", 0.004);
+  EXPECT_EQ(another_robot(search_robot(arm.config(), arm.robot(), arm.samples())), "");
+  arm.spoil(0, "elbow_joint_x", 0.04);
+  EXPECT_THAT(another_robot(search_robot(arm.config(), arm.robot(), arm.samples())),
+              testing::HasSubstr("another robot, or of another version of it: these samples change "
+                                 "elbow_joint_x by 40"));
+  arm.spoil(0, "elbow_joint_x", 0.4);
+  EXPECT_THAT(another_robot(search_robot(arm.config(), arm.robot(), arm.samples())),
+              testing::HasSubstr("are left whatever is freed"));
 }
 
 /// What would help a calibration.

@@ -104,6 +104,13 @@ struct StepConfig {
   SourceLocation place;                                       ///< where the step begins
 };
 
+/// Whether a step may free nothing.
+enum class NothingFree {
+  is_error,
+  without_lists,  ///< it may, if it has neither `free_params` nor `free_frames`: both were left open
+  is_allowed
+};
+
 /// Names of a step's free parameters, each with the place that frees it: first free_params, then
 /// the free axes of its frames.
 [[nodiscard]] inline std::vector<FreeParamConfig> free_parameters(const StepConfig& step) {

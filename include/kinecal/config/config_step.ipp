@@ -17,6 +17,7 @@ namespace kinecal::detail {
 struct ConfigProgress {
   Config config;
   FreeAxes free_axes;  ///< free in one of the steps so far
+  NothingFree nothing_free = NothingFree::is_error;
 };
 
 /// base_link, gravity, payload_link, verbose and max_num_iterations of the file or of a step.
@@ -120,17 +121,20 @@ inline void check_model_types(std::vector<ConfigItem>& items, StepConfig& step) 
   }
 }
 
-inline void check_step(const ConfigMap& map, StepConfig& step) {
+inline void check_step(ConfigMap& map, StepConfig& step, NothingFree nothing_free) {
   require_items(map, kModelItems);
   require_items(map, kErrorBlockItems);
   check_free_parameters(map, step);
   std::vector<std::string> free;
   for (const FreeParamConfig& parameter : free_parameters(step)) free.push_back(parameter.name);
   check_bounds(map, step.bounds, free, "in this step");
-  if (free.empty()) {
+  const bool has_list = map.find("free_params") != nullptr || map.find("free_frames") != nullptr;
+  const bool may_be_empty = nothing_free == NothingFree::is_allowed ||
+                            (nothing_free == NothingFree::without_lists && !has_list);
+  if (free.empty() && !may_be_empty) {
     map.error(map.place(),
               "nothing is free; name parameters under 'free_params' or frames under "
-              "'free_frames'");
+              "'free_frames', or let 'kinecal identify' find them");
   }
 }
 
@@ -166,7 +170,7 @@ inline void read_step(ConfigMap& map, const FindConfigItems& find, const std::st
   step.initial_values = read_initial_values(map);
   step.initial_values.insert(step.initial_values.end(), fixed.begin(), fixed.end());
   step.bounds = read_bounds(map);
-  check_step(map, step);
+  check_step(map, step, progress.nothing_free);
   map.report_unknown();
   progress.config.steps.push_back(std::move(step));
 }

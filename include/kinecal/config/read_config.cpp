@@ -29,8 +29,10 @@ Config read_config(const std::string& path, Diagnostics& diagnostics) {
   return parse_config(detail::read_yaml_text(path), path, diagnostics);
 }
 
-Config parse_config(const std::string& text, const std::string& path, Diagnostics& diagnostics) {
+Config parse_config(const std::string& text, const std::string& path, Diagnostics& diagnostics,
+                    NothingFree nothing_free) {
   detail::ConfigProgress progress;
+  progress.nothing_free = nothing_free;
   progress.config.place = {path, 0};
   Diagnostics found;
   const detail::YamlNode content = detail::parse_config_text(text, path, found);

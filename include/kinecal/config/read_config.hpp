@@ -21,9 +21,11 @@ namespace kinecal {
 [[nodiscard]] Config read_config(const std::string& path, Diagnostics& diagnostics);
 
 /// Reads a configuration from its text.
-/// @param path  of the text's file, for messages
+/// @param path          of the text's file, for messages
+/// @param nothing_free  whether a step may free nothing, as for a search
 /// @throws InputError  "path:line: ..." if it is not YAML
 [[nodiscard]] Config parse_config(const std::string& text, const std::string& path,
-                                  Diagnostics& diagnostics);
+                                  Diagnostics& diagnostics,
+                                  NothingFree nothing_free = NothingFree::is_error);
 
 }  // namespace kinecal

@@ -10,6 +10,7 @@
 
 #include "kinecal/report/next_step.hpp"
 #include "kinecal/report/recorded_poses.hpp"
+#include "kinecal/report/reported_search.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
 
@@ -21,8 +22,9 @@ struct Findings : JudgedResult {
   std::map<std::string, std::string> images = {};  ///< "raw" or "rectified", where it was chosen,
                                                    ///< by camera
   std::vector<std::string> helps = {};  ///< what would lower the error on held-out poses: sentences
-  RecordedPoses poses = {};             ///< of the samples that were used
-  ProgramCall call = {};                ///< how the program was called
+  ReportedSearch search = {};  ///< that chose the free parameters; without steps: there was none
+  RecordedPoses poses = {};    ///< of the samples that were used
+  ProgramCall call = {};       ///< how the program was called
 };
 
 /// What is reported of a judged calibration.

@@ -92,9 +92,11 @@ std::string html_file(const HtmlPage& page) {
 std::string html_report(const ReportData& data, const std::string& scene) {
   const std::vector<Chart> all = charts(data);
   std::string body = detail::html_top(data);
-  body += detail::html_navigation(!scene.empty() || !data.workspace.empty());
+  body += detail::html_navigation(!scene.empty() || !data.workspace.empty(),
+                                  !data.search.steps.empty());
   body += "<main>\n";
   body += detail::section("errors", "Errors", detail::fit_figures(data), all);
+  body += detail::section("search", "Search", detail::search_figures(data), all);
   body += detail::section("samples", "Samples", detail::worst_samples(data), all);
   body += detail::section("robot", "Robot", scene.empty() ? "" : detail::view_figure(), all);
   body += detail::section("parameters", "Parameters", detail::parameter_figures(data), all);

@@ -97,7 +97,8 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows,
 [[nodiscard]] inline std::string_view section_of(const Chart& chart) {
   if (chart.section == "residuals") return "samples";
   if (chart.section == "workspace") return "robot";
-  const bool has_own = chart.section == "parameters" || chart.section == "convergence";
+  const bool has_own =
+      chart.section == "parameters" || chart.section == "search" || chart.section == "convergence";
   return has_own ? std::string_view(chart.section) : "errors";
 }
 
@@ -120,16 +121,18 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows,
   return grade == Grade::good ? "good" : grade == Grade::use_with_care ? "care" : "bad";
 }
 
-[[nodiscard]] inline std::string html_navigation(bool has_scene) {
+[[nodiscard]] inline std::string html_navigation(bool has_scene, bool has_search) {
   std::string items;
   for (const auto& [id, title] :
        std::initializer_list<std::pair<const char*, const char*>>{{"errors", "Errors"},
+                                                                  {"search", "Search"},
                                                                   {"samples", "Samples"},
                                                                   {"robot", "Robot"},
                                                                   {"parameters", "Parameters"},
                                                                   {"convergence", "Convergence"},
                                                                   {"inputs", "Inputs"}}) {
     if (std::string_view(id) == "robot" && !has_scene) continue;
+    if (std::string_view(id) == "search" && !has_search) continue;
     items += fmt::format("<li><a href=\"#{}\">{}</a></li>", id, title);
   }
   return "<nav class=\"toc\" aria-label=\"Sections\"><ul>" + items + "</ul></nav>\n";

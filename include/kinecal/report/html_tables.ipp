@@ -107,6 +107,45 @@ namespace kinecal::detail {
          html_table(rows, "tnnntt");
 }
 
+/// Some names, and how many more there are.
+[[nodiscard]] inline std::string first_names(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 4;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + names[i];
+  }
+  return names.size() > kShown ? text + fmt::format(" and {} more", names.size() - kShown) : text;
+}
+
+/// What each step of a search bought, and what was tried and not freed.
+[[nodiscard]] inline std::string search_figures(const ReportData& data) {
+  if (data.search.steps.empty()) return "";
+  const std::string& of = data.search.unit;
+  std::vector<std::vector<std::string>> rows = {{"freed", "parameters", "fitted", "held out", "±",
+                                                 "regions held out", "unit", "times its ±",
+                                                 "explains the same"}};
+  const auto text = [&](double value) {
+    return std::isfinite(value) ? in_reading_unit(value, of) : std::string("-");
+  };
+  for (const ReportedSearchStep& step : data.search.steps) {
+    rows.push_back({step.freed.empty() ? "(only unknown poses)"
+                    : step.is_chosen   ? step.freed
+                                       : "not freed: " + step.freed,
+                    fmt::format("{}", step.parameters), text(step.fitted), text(step.held_out),
+                    std::isfinite(step.held_out) ? text(step.deviation) : "-",
+                    step.region > 0.0 ? text(step.region) : "-",
+                    of == "1" ? "x noise" : reading_unit(of),
+                    step.freed.empty() ? "" : fmt::format("{:.1f}", std::abs(step.certainty)),
+                    first_names(step.alike)});
+  }
+  return "<p>A search chose the free parameters; each row has those above it free, too. ± is the "
+         "standard error of the error on held-out poses. The last columns: how much that error "
+         "would "
+         "rise without this one alone, in standard errors, and what would explain the same in "
+         "place of it.</p>\n" +
+         html_table(rows, "tnnnnntnl");
+}
+
 [[nodiscard]] inline std::string step_figures(const ReportData& data) {
   std::vector<std::vector<std::string>> rows = {
       {"step", "ended", "parameters", "residuals", "cost before", "after", "iterations"}};

@@ -113,6 +113,20 @@ namespace detail {
           {"significant", known && note_on(parameter, *deviation).empty()}};
 }
 
+[[nodiscard]] inline Json json(const ReportedSearchStep& step, const std::string& unit) {
+  return {{"freed", step.freed},
+          {"chosen", step.is_chosen},
+          {"parameters", step.parameters},
+          {"unit", unit},
+          {"fitted", step.fitted},
+          {"held_out", step.held_out},
+          {"held_out_error", std::isfinite(step.held_out) ? Json(step.deviation) : Json()},
+          {"regions_held_out", step.region > 0.0 ? Json(step.region) : Json()},
+          {"certainty", step.freed.empty() ? Json() : Json(step.certainty)},
+          {"alike", step.alike},
+          {"inseparable", step.inseparable}};
+}
+
 [[nodiscard]] inline Json json_captures(const Findings& findings, const Assessment& step) {
   Json bad = Json::array();
   for (const CaptureError& error : step.captures) {
@@ -140,6 +154,9 @@ std::string json_report(const Findings& findings) {
     return detail::json(step.observability, result.table);
   };
   const auto parameter = [&](int i) { return detail::json_parameter(findings, i); };
+  const auto searched = [&](const ReportedSearchStep& step) {
+    return detail::json(step, findings.search.unit);
+  };
   detail::Json images = detail::Json::object();
   for (const auto& [sensor, image] : findings.images) images[sensor] = image;
   const auto file = [](const auto& of) {
@@ -153,6 +170,7 @@ std::string json_report(const Findings& findings) {
       {"verdict", to_string(findings.judgement.verdict)},
       {"reasons", findings.judgement.reasons},
       {"would_help", findings.helps},
+      {"search", json_list(findings.search.steps, searched)},
       {"next", next_step(findings)},
       {"converged", result.converged},
       {"termination", result.termination},

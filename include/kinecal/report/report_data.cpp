@@ -110,6 +110,7 @@ ReportData report_data(const Calibration& calibration, const Findings& findings,
   data.verdict = findings.judgement.verdict;
   data.reasons = findings.judgement.reasons;
   data.helps = findings.helps;
+  data.search = findings.search;
   data.next = next_step(findings);
   data.steps = findings.result.steps;
   data.blocks = detail::reported_blocks(calibration, findings, samples, left_out);

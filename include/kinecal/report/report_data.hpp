@@ -92,6 +92,7 @@ struct ReportData {
   std::string date;                  ///< "2026-11-23"; of the calibration
   std::string recorded;              ///< when samples were recorded; empty: unknown
   std::vector<InputFile> inputs;
+  ReportedSearch search;          ///< that chose the free parameters
   std::vector<StepResult> steps;  ///< with the cost of each iteration
   std::vector<ReportedBlock> blocks;
   std::vector<ReportedSample> samples;  ///< used ones by number in the problem, then those left out

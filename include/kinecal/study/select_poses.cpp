@@ -155,6 +155,17 @@ PoseSelection select_poses(const PoseCandidates& candidates, const SelectOptions
   return detail::PoseSearch(candidates, options).run();
 }
 
+PlainMatrix goal_of_parameters(const PoseCandidates& candidates, const std::vector<int>& columns) {
+  if (candidates.information.empty()) throw std::invalid_argument("there are no poses to choose");
+  const Eigen::Index n = candidates.information.front().rows();
+  Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(n, n), goal = mean;
+  for (const PlainMatrix& of : candidates.information) {
+    mean += of.matrix() / static_cast<double>(candidates.information.size());
+  }
+  for (const int column : columns) goal(column, column) = mean(column, column);
+  return goal;
+}
+
 double design_value(const PoseCandidates& candidates, const std::vector<int>& chosen,
                     PoseCriterion criterion) {
   const detail::PoseDesign design(candidates, criterion);

@@ -67,6 +67,15 @@ struct PoseSelection {
 [[nodiscard]] PoseSelection select_poses(const PoseCandidates& candidates,
                                          const SelectOptions& options);
 
+/// A goal for PoseCandidates: the sum of the variances of some parameters, all others being free, each in units of what
+/// a mean pose alone gives if all others are known.  Of two parameters that explain the same, it is least for the poses
+/// that tell them apart: the inverse variance of one is the information in the part of its effect that the other
+/// parameters do not explain.
+/// Source: Pukelsheim, Optimal Design of Experiments, 2 (c-optimality).
+/// @param columns  of the information
+[[nodiscard]] PlainMatrix goal_of_parameters(const PoseCandidates& candidates,
+                                             const std::vector<int>& columns);
+
 /// The criterion of a set; infinite if it determines less than all candidates do.
 [[nodiscard]] double design_value(const PoseCandidates& candidates, const std::vector<int>& chosen,
                                   PoseCriterion criterion);

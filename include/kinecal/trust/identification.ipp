@@ -143,13 +143,11 @@ class Identification {
     return {fit, poses_, largest_};
   }
 
-  /// What is found at the last solution, with errors as distances of the error block, or, of several, in units
-  /// of their noise.
-  [[nodiscard]] IdentifyStep written(const SearchStep& step) const {
+  /// What a weighted residual of 1 is at the last solution: a distance of the error block; of several, 1: errors are in
+  /// units of their noise.
+  [[nodiscard]] double distance_of_one() const {
     const Term& only = step_.problem->term(0);
-    const double noise = sigmas_.size() > 1 ? 1.0 : std::sqrt(only.feature_size) / only.weight;
-    return {step.candidate,          noise * step.fit.fitted, noise * step.fit.held_out,
-            noise * step.fit.region, step.certainty,          step.alike};
+    return sigmas_.size() > 1 ? 1.0 : std::sqrt(only.feature_size) / only.weight;
   }
   /// The unit of these errors.
   [[nodiscard]] std::string unit() const { return sigmas_.size() > 1 ? "1" : noise_unit(); }

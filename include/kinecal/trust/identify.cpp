@@ -48,6 +48,14 @@ void find_turns(Identification& search, Identified& found) {
   }
 }
 
+/// A step, with errors as distances.
+[[nodiscard]] IdentifyStep step_in_distances(const Identification& search, const SearchStep& step) {
+  const double one = search.distance_of_one();
+  return {step.candidate,           one * step.fit.fitted, one * step.fit.held_out,
+          one * step.fit.region,    step.certainty,        step.alike,
+          one * step.fit.deviation, step.fit.columns,      step.inseparable};
+}
+
 Identified run(Identification& search) {
   constexpr int kLinearizations = 12;
   Identified found;
@@ -80,10 +88,15 @@ Identified run(Identification& search) {
   if (!found.result.converged) return found;
   const ParameterSearch linear = search.linearized();
   const std::vector<int> base = linear.independent(search.base());
-  found.steps = {
-      search.written({.candidate = -1, .fit = linear.fit_of(base, search.candidates(), {})})};
+  found.steps = {step_in_distances(
+      search, {.candidate = -1, .fit = linear.fit_of(base, search.candidates(), {})})};
   for (const SearchStep& step : linear.path(base, search.candidates(), found.chosen)) {
-    found.steps.push_back(search.written(step));
+    found.steps.push_back(step_in_distances(search, step));
+  }
+  constexpr int kMostBeyond = 4;
+  for (const SearchStep& step :
+       linear.beyond(base, search.candidates(), found.chosen, kMostBeyond)) {
+    found.beyond.push_back(step_in_distances(search, step));
   }
   return found;
 }
@@ -127,7 +140,7 @@ Identified most_helpful(Calibration& calibration, std::span<const Sample> sample
                                    found.chosen.begin() + static_cast<std::ptrdiff_t>(n));
       SearchStep step{.candidate = n == 0 ? -1 : first.back()};
       step.fit = linear.fit_of(columns, search.candidates(), first);
-      found.steps.push_back(search.written(step));
+      found.steps.push_back(detail::step_in_distances(search, step));
     }
     return found;
   }

@@ -33,6 +33,10 @@ struct IdentifyStep {
   double certainty =
       0.0;  ///< rise of the error on held-out poses without it alone, in its standard errors
   std::vector<int> alike;  ///< other candidates that explain the same
+  double deviation = 0.0;  ///< standard error of held_out
+  int parameters = 0;      ///< that are free
+  std::vector<int> inseparable =
+      {};  ///< those of `alike` that no sample like these tells from it: either is as good
 };
 
 /// What was found.
@@ -41,8 +45,10 @@ struct Identified {
   /// Zeros that are a quarter or half turn off: candidates, and radians.  Their values begin there.
   std::vector<std::pair<int, double>> turned;
   std::vector<IdentifyStep> steps;  ///< the first one is the base alone
-  CalibrationResult result;         ///< with the chosen parameters free
-  std::string unit;  ///< of the errors: that of the error block; "1": there are several
+  /// What the next candidates would have bought, if they were freed after these: they were not, because noise explains it.
+  std::vector<IdentifyStep> beyond;
+  CalibrationResult result;  ///< with the chosen parameters free
+  std::string unit;          ///< of the errors: that of the error block; "1": there are several
 };
 
 /// The one or two held candidates that lower the error on held-out poses most, tested by another solve.  Without

@@ -153,4 +153,5 @@ double ParameterSearch::certainty_of(const std::vector<int>& with,
 
 }  // namespace kinecal
 
+#include "kinecal/trust/parameter_search_path.ipp"
 #include "kinecal/trust/parameter_search_run.ipp"

@@ -23,9 +23,11 @@ struct SearchCandidate {
 
 /// How well a subset predicts: weighted residuals, root of the mean square of a component.
 struct SearchFit {
-  double fitted = 0.0;    ///< of all poses
-  double held_out = 0.0;  ///< of poses held out; infinite if a fold leaves something undetermined
-  double region = 0.0;    ///< of regions held out; 0: there are none
+  double fitted = 0.0;     ///< of all poses
+  double held_out = 0.0;   ///< of poses held out; infinite if a fold leaves something undetermined
+  double region = 0.0;     ///< of regions held out; 0: there are none
+  double deviation = 0.0;  ///< standard error of held_out, by poses
+  int columns = 0;         ///< free ones
 };
 
 /// A parameter that was found, in the order of what they explain.
@@ -35,6 +37,8 @@ struct SearchStep {
   double certainty =
       0.0;  ///< rise of the error on held-out poses without it alone, in its standard errors
   std::vector<int> alike = {};  ///< other candidates that would do as well in place of it
+  std::vector<int> inseparable =
+      {};  ///< those of them that add nothing beside it: no sample like these separates them
 };
 
 /// The samples of a search.
@@ -81,6 +85,11 @@ class ParameterSearch {
   [[nodiscard]] std::vector<SearchStep> path(const std::vector<int>& base,
                                              const Candidates& candidates,
                                              const std::vector<int>& chosen) const;
+  /// What the next candidates would buy after the chosen ones: those that explain most, if the samples determine them.
+  /// @param most  steps
+  [[nodiscard]] std::vector<SearchStep> beyond(const std::vector<int>& base,
+                                               const Candidates& candidates,
+                                               const std::vector<int>& chosen, int most) const;
 
  private:
   /// A fit of a subset to all rows.

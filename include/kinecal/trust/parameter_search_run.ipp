@@ -150,39 +150,4 @@ void ParameterSearch::run(const std::vector<int>& base, const Candidates& candid
   for (int& k : chosen) k = simplest(base, candidates, chosen, k);
 }
 
-SearchFit ParameterSearch::fit_of(const std::vector<int>& base, const Candidates& candidates,
-                                  const std::vector<int>& chosen) const {
-  const std::vector<int> columns = detail::columns_of(base, candidates, chosen);
-  const auto root = [&](const Eigen::VectorXd& squares) {
-    return squares.size() > 0 ? std::sqrt(squares.sum() / weight_)
-                              : std::numeric_limits<double>::infinity();
-  };
-  return {std::sqrt(whole_fit(columns).squares / weight_), root(predicted(columns, fold_)),
-          region_.empty() ? 0.0 : root(predicted(columns, region_))};
-}
-
-std::vector<SearchStep> ParameterSearch::path(const std::vector<int>& base,
-                                              const Candidates& candidates,
-                                              const std::vector<int>& chosen) const {
-  std::vector<SearchStep> steps;
-  std::vector<int> free, left = chosen;
-  while (!left.empty()) {
-    const Whole whole = whole_fit(detail::columns_of(base, candidates, free));
-    const auto gain = [&](int k) {
-      return gain_of(whole, candidates[static_cast<std::size_t>(k)], k).squares;
-    };
-    const auto next =
-        std::max_element(left.begin(), left.end(), [&](int a, int b) { return gain(a) < gain(b); });
-    SearchStep step{.candidate = *next};
-    left.erase(next);
-    free.push_back(step.candidate);
-    const std::vector<int> without = detail::columns_of(base, candidates, chosen, step.candidate);
-    step.fit = fit_of(base, candidates, free);
-    step.certainty = certainty_of(detail::columns_of(base, candidates, chosen), without);
-    step.alike = like(whole_fit(without), candidates, chosen, step.candidate);
-    steps.push_back(std::move(step));
-  }
-  return steps;
-}
-
 }  // namespace kinecal

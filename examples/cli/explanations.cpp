@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "explanations.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "kinecal/report/text.hpp"
+#include "kinecal/text/counted.hpp"
+#include "kinecal/text/reading.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// The columns of an explanation's parameters among the free ones.
+std::vector<int> columns_of(const StudyInput& input, std::size_t explanation) {
+  const std::vector<std::string> names = free_names(input);
+  std::vector<int> columns;
+  for (const std::string& name : input.explanations.at(explanation)) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) {
+      throw InputError("--tell-apart: no pose here depends on '" + name + "'");
+    }
+    columns.push_back(static_cast<int>(at - names.begin()));
+  }
+  return columns;
+}
+
+/// What some poses say of both.
+struct KnownExplanations {
+  std::vector<double> deviations;  ///< of the parameters of the first, then of the second
+  double correlation = 1.0;        ///< the largest size of one between them; 1: not determined
+};
+
+KnownExplanations known_by(const StudyInput& input, const PoseChoice& choice,
+                           const std::vector<int>& chosen) {
+  const ExpectedUncertainty expected =
+      expected_uncertainty(choice.design, with_existing(choice, chosen));
+  const Eigen::MatrixXd covariance = expected.covariance.matrix(),
+                        deviation = expected.deviation.matrix();
+  const std::vector<int> first = columns_of(input, 0), second = columns_of(input, 1);
+  KnownExplanations known;
+  for (const auto& columns : {first, second}) {
+    for (const int c : columns) known.deviations.push_back(deviation(c));
+  }
+  const auto& all = known.deviations;
+  if (!std::all_of(all.begin(), all.end(), [](double d) { return std::isfinite(d); })) return known;
+  known.correlation = 0.0;
+  for (const int a : first) {
+    for (const int b : second) {
+      const double size = std::sqrt(covariance(a, a) * covariance(b, b));
+      known.correlation = std::max(known.correlation, std::abs(covariance(a, b)) / size);
+    }
+  }
+  return known;
+}
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Medians of random sets of so many poses.
+KnownExplanations known_by_random(const StudyInput& input, const PoseChoice& choice,
+                                  std::size_t count) {
+  constexpr int kSets = 51;
+  std::vector<std::vector<double>> deviations;
+  std::vector<double> correlations;
+  SeededRandom random(1);
+  const int all = static_cast<int>(choice.candidates.information.size());
+  std::vector<int> order(static_cast<std::size_t>(all));
+  std::iota(order.begin(), order.end(), 0);
+  for (int set = 0; set < kSets; ++set) {
+    for (std::size_t i = 0; i < count; ++i) {
+      std::swap(order[i],
+                order[static_cast<std::size_t>(random.integer(static_cast<int>(i), all - 1))]);
+    }
+    const KnownExplanations known = known_by(
+        input, choice, {order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count)});
+    deviations.resize(known.deviations.size());
+    for (std::size_t p = 0; p < deviations.size(); ++p) {
+      deviations[p].push_back(known.deviations[p]);
+    }
+    correlations.push_back(known.correlation);
+  }
+  KnownExplanations median{{}, median_of(correlations)};
+  for (const std::vector<double>& of : deviations) median.deviations.push_back(median_of(of));
+  return median;
+}
+
+std::string deviation_text(double deviation, const std::string& unit) {
+  return std::isfinite(deviation) ? "+- " + reading(deviation, unit) : "not determined";
+}
+
+}  // namespace
+
+void choose_between(const StudyInput& input, PoseChoice& choice) {
+  std::vector<int> columns = columns_of(input, 0);
+  const std::vector<int> second = columns_of(input, 1);
+  columns.insert(columns.end(), second.begin(), second.end());
+  std::vector<int> all(choice.candidates.information.size());
+  std::iota(all.begin(), all.end(), 0);
+  const KnownExplanations known = known_by(input, choice, all);
+  constexpr double kTheSame = 0.9999;  // of a correlation by all poses together
+  if (known.correlation > kTheSame) {
+    throw InputError(fmt::format(
+        "--tell-apart: no pose tells '{}' and '{}' apart, beside what else is free: not even all "
+        "{} "
+        "together; a calibration with either is as good, so free the one that you can correct",
+        input.explanations[0].front(), input.explanations[1].front(), counted(all.size(), "pose")));
+  }
+  choice.candidates.goal = goal_of_parameters(choice.candidates, columns);
+}
+
+std::string explanations_text(const StudyInput& input, const PoseChoice& choice,
+                              const std::vector<int>& chosen) {
+  const KnownExplanations known = known_by(input, choice, chosen),
+                          random = known_by_random(input, choice, chosen.size());
+  const bool has_more = !choice.have.empty();
+  std::vector<std::string> head = {"", "these poses", "as many random ones"};
+  if (has_more) head.push_back("none of them");
+  const KnownExplanations before =
+      has_more ? known_by(input, choice, {}) : KnownExplanations{known.deviations, 1.0};
+  TextTable table(head);
+  std::size_t at = 0;
+  for (const auto& names : input.explanations) {
+    for (const std::string& name : names) {
+      const std::string& unit = input.calibration.table[name].unit;
+      std::vector<std::string> row = {name, deviation_text(known.deviations[at], unit),
+                                      deviation_text(random.deviations[at], unit)};
+      if (has_more) row.push_back(deviation_text(before.deviations[at], unit));
+      table.add(row);
+      ++at;
+    }
+  }
+  std::vector<std::string> row = {"correlation", fmt::format("{:.3f}", known.correlation),
+                                  fmt::format("{:.3f}", random.correlation)};
+  if (has_more) row.push_back(fmt::format("{:.3f}", before.correlation));
+  table.add(row);
+  return fmt::format(
+             "{} of {} selected, which tell '{}' and '{}' apart{}\n\n", chosen.size(),
+             counted(choice.candidates.information.size(), "pose"), input.explanations[0].front(),
+             input.explanations[1].front(),
+             has_more ? fmt::format(", with your {}", counted(choice.have.size(), "sample")) : "") +
+         table.str() + "\n";
+}
+
+}  // namespace kinecal::cli

@@ -1,0 +1,169 @@
+// Definitions of robot_search.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/tools/identify/robot_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/hold_parameters.hpp"
+#include "kinecal/report/text.hpp"
+#include "kinecal/text/counted.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/reading.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+[[nodiscard]] const std::string& name_of(const RobotSearch& search, int candidate) {
+  return search.task.candidates[static_cast<std::size_t>(candidate)].name;
+}
+
+[[nodiscard]] ReportedSearchStep reported_step(const RobotSearch& search, const IdentifyStep& step,
+                                               bool is_chosen) {
+  ReportedSearchStep of{.freed = step.candidate < 0 ? "" : name_of(search, step.candidate),
+                        .parameters = step.parameters,
+                        .fitted = step.fitted,
+                        .held_out = step.held_out,
+                        .deviation = step.deviation,
+                        .region = step.region,
+                        .certainty = step.certainty,
+                        .is_chosen = is_chosen};
+  for (const int k : step.alike) of.alike.push_back(name_of(search, k));
+  for (const int k : step.inseparable) of.inseparable.push_back(name_of(search, k));
+  return of;
+}
+
+/// "a, b, c, d and 3 more"
+[[nodiscard]] std::string some_names(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 4;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + names[i];
+  }
+  return names.size() > kShown ? text + fmt::format(" and {} more", names.size() - kShown) : text;
+}
+
+/// What explains the same: first what no sample tells apart.
+[[nodiscard]] std::string same_explanations(const ReportedSearchStep& step) {
+  std::string text;
+  if (!step.inseparable.empty()) {
+    text += fmt::format("no sample like these tells {} from {}: either is as good\n", step.freed,
+                        some_names(step.inseparable));
+  }
+  std::vector<std::string> others;
+  for (const std::string& name : step.alike) {
+    if (std::find(step.inseparable.begin(), step.inseparable.end(), name) ==
+        step.inseparable.end()) {
+      others.push_back(name);
+    }
+  }
+  if (!others.empty()) {
+    text +=
+        fmt::format("in place of {}, these explain the same: {}\n", step.freed, some_names(others));
+  }
+  return text;
+}
+
+/// Takes what is held out of a search: a parameter, all of a frame, or a candidate by its name.
+void hold_in_search(const std::vector<std::string>& names, const AnyProblem& problem,
+                    IdentifyTask& task) {
+  std::set<std::string> known;
+  for (const std::string& name : names) {
+    const int parameter = problem.table().find(name);
+    const auto is_held = [&](int p) {
+      if (parameter >= 0) return p == parameter;
+      return problem.frames().contains(name) &&
+             problem.owners()[static_cast<std::size_t>(p)] == name;
+    };
+    const auto has_held = [&](const IdentifyCandidate& candidate) {
+      known.insert(candidate.name);
+      return candidate.name == name ||
+             std::any_of(candidate.parameters.begin(), candidate.parameters.end(), is_held);
+    };
+    if (std::erase_if(task.base, is_held) + std::erase_if(task.candidates, has_held) > 0) continue;
+    throw InputError("--hold " + name + ": is not a candidate of the search" +
+                     did_you_mean(name, known));
+  }
+}
+
+}  // namespace
+}  // namespace detail
+
+RobotSearch search_robot(const Config& config, const Robot& robot, std::span<const Sample> samples,
+                         const SearchLimits& limits) {
+  if (config.steps.size() != 1) {
+    throw InputError(config.place.file + ": has " + counted(config.steps.size(), "step") +
+                     "; a search for what is free is in one");
+  }
+  RobotSearch all;
+  Diagnostics diagnostics;
+  Calibration calibration =
+      assemble(with_all_candidates(config, robot), robot, samples, diagnostics);
+  diagnostics.throw_if_errors();
+  const AnyProblem& problem = *calibration.steps.front().problem;
+  all.task = identify_task(config, problem, samples, limits.geometry_only);
+  detail::hold_in_search(limits.hold, problem, all.task);
+  all.found = identify(calibration, samples, all.task.base, all.task.candidates);
+  all.config = identified_config(config, all.task, all.found, problem);
+  Diagnostics of_others;  // what is not free any more
+  hold_parameters(all.config, limits.hold, of_others);
+  return all;
+}
+
+ReportedSearch reported(const RobotSearch& search) {
+  ReportedSearch all{search.found.unit};
+  for (const IdentifyStep& step : search.found.steps) {
+    all.steps.push_back(detail::reported_step(search, step, true));
+  }
+  for (const IdentifyStep& step : search.found.beyond) {
+    all.steps.push_back(detail::reported_step(search, step, false));
+  }
+  return all;
+}
+
+std::string search_text(const RobotSearch& search) {
+  const ReportedSearch all = reported(search);
+  std::string text;
+  for (const auto& [k, turn] : search.found.turned) {
+    text += fmt::format("the zero of '{}' is {:+.0f} deg off: the search begins there\n\n",
+                        detail::name_of(search, k), turn * 180.0 / std::numbers::pi);
+  }
+  TextTable table(
+      {"freed", "fitted", "held out", "+-", "regions held out", "unit", "times its +-"});
+  const auto number = [&](double value) { return in_reading_unit(value, all.unit); };
+  for (const ReportedSearchStep& step : all.steps) {
+    if (!step.is_chosen) continue;
+    table.add({step.freed.empty() ? "(only unknown poses)" : step.freed, number(step.fitted),
+               number(step.held_out), number(step.deviation),
+               step.region > 0.0 ? number(step.region) : "-", reading_unit(all.unit),
+               step.freed.empty() ? "" : fmt::format("{:.1f}", std::abs(step.certainty))});
+  }
+  text += table.str();
+  for (const ReportedSearchStep& step : all.steps) {
+    if (!step.alike.empty()) text += detail::same_explanations(step);
+  }
+  return text;
+}
+
+std::map<std::string, std::string> search_comments(const RobotSearch& search) {
+  std::map<std::string, std::string> why;
+  const Identified& found = search.found;
+  for (std::size_t i = 1; i < found.steps.size(); ++i) {
+    const auto k = static_cast<std::size_t>(found.steps[i].candidate);
+    for (const int p : search.task.candidates[k].parameters) {
+      why.emplace(found.result.table[p].name,
+                  fmt::format("held out {} -> {}", reading(found.steps[i - 1].held_out, found.unit),
+                              reading(found.steps[i].held_out, found.unit)));
+    }
+  }
+  return why;
+}
+
+}  // namespace kinecal

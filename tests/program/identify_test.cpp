@@ -1,0 +1,164 @@
+// kinecal identify, and what goes with it: the report of a search, calibrate with a configuration that leaves open what is
+// free, samples of another robot, and poses that decide between two explanations.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "support/paths.hpp"
+#include "support/run_program.hpp"
+
+namespace kinecal {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class IdentifyProgram : public test::ProgramTest {
+ protected:
+  IdentifyProgram() {
+    const fs::path examples = fs::path(test::source_folder()) / "examples";
+    fs::copy(examples / "csv/tracker.csv", folder_);
+    fs::copy(examples / "csv/columns.yaml", folder_);
+    fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
+    EXPECT_EQ(kinecal("convert tracker.csv samples.yaml --columns columns.yaml").code, 0);
+  }
+  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
+    return run("timeout 100 " + test::kinecal_program() + " " + arguments + " < /dev/null");
+  }
+  [[nodiscard]] std::string read(const std::string& file) const {
+    std::ifstream in(folder_ / file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  void write(const std::string& file, const std::string& text) const {
+    std::ofstream(folder_ / file) << text;
+  }
+  /// Writes calibrate.yaml without what it frees.
+  /// @param with  in place of it
+  void write_open_config(const std::string& with = "") const {
+    ASSERT_EQ(kinecal("init --urdf ur5e.urdf --target tracker --arm tool0").code, 0);
+    const std::string text = read("calibrate.yaml");
+    const std::size_t begin = text.find("\nfree_params:");
+    const std::size_t end = text.find("\nerror_blocks:");
+    ASSERT_LT(begin, end);
+    write("calibrate.yaml", text.substr(0, begin) + "\n" + with + text.substr(end));
+  }
+};
+
+const std::string kFiles = "--urdf ur5e.urdf --samples samples.yaml ";
+
+TEST_F(IdentifyProgram, WritesTheSearchIntoItsReports) {
+  const Outcome found = kinecal("identify " + kFiles + "--report r.html --report r.json");
+  ASSERT_EQ(found.code, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr(" · identified.yaml · r.html · r.json\n"));
+  const std::string page = read("r.html"), json = read("r.json");
+  EXPECT_THAT(page, AllOf(HasSubstr("<section id=\"search\">"), HasSubstr("data-chart=\"search\""),
+                          HasSubstr("href=\"#search\"")));
+  EXPECT_THAT(json, AllOf(HasSubstr("\"search\": ["), HasSubstr("\"held_out_error\": "),
+                          HasSubstr("\"freed\": \"wrist_1_joint\"")));
+}
+
+TEST_F(IdentifyProgram, ReportsAreAsTheirSchemaSays) {
+  if (std::system("python3 -c 'import jsonschema' 2> /dev/null") != 0) {
+    GTEST_SKIP() << "there is no python3-jsonschema";
+  }
+  ASSERT_EQ(kinecal("calibrate " + kFiles + "--output out").code, 0);
+  const fs::path source = test::source_folder();
+  const Outcome valid = run("python3 " + (source / "tests/program/validate.py").string() + " " +
+                            (source / "include/kinecal/report/schema").string() + " out");
+  EXPECT_EQ(valid.code, 0) << valid.out << valid.err;
+}
+
+TEST_F(IdentifyProgram, CalibrateSearchesWhereTheConfigurationLeavesItOpen) {
+  write_open_config();
+  const Outcome found = kinecal("identify " + kFiles + "--config calibrate.yaml");
+  ASSERT_EQ(found.code, 0) << found.err;
+  const Outcome open = kinecal("calibrate " + kFiles + "--config calibrate.yaml --output out");
+  EXPECT_EQ(open.code, 0) << open.err;
+  EXPECT_THAT(open.err, HasSubstr("calibrate.yaml: nothing is free: what these samples support is "
+                                  "searched for, as 'kinecal identify' does"));
+  const std::string table = found.out.substr(0, found.out.find("\ngood"));
+  EXPECT_THAT(open.out, HasSubstr(table)) << "the same table";
+  EXPECT_EQ(read("out/config.yaml"), read("identified.yaml"));
+  const Outcome none = kinecal("calibrate " + kFiles + "--dry-run");
+  EXPECT_EQ(none.code, 0) << none.err;
+  EXPECT_THAT(none.err, HasSubstr("there is no --config; the samples suggest one"));
+  const Outcome quiet = kinecal("calibrate " + kFiles + "--dry-run --json");
+  EXPECT_THAT(quiet.out, testing::StartsWith("{"));
+}
+
+TEST_F(IdentifyProgram, AnEmptyListIsAnErrorThatNamesIdentify) {
+  write_open_config("free_params: []\n");
+  const Outcome refused = kinecal("calibrate " + kFiles + "--config calibrate.yaml --output out");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err,
+              HasSubstr("nothing is free; name parameters under 'free_params' or frames "
+                        "under 'free_frames', or let 'kinecal identify' find them"));
+  EXPECT_EQ(kinecal("identify " + kFiles + "--config calibrate.yaml").code, 0);
+}
+
+TEST_F(IdentifyProgram, HoldsWhatItIsTold) {
+  const Outcome held = kinecal("identify " + kFiles + "--hold wrist_1_joint");
+  EXPECT_THAT(held.out, Not(HasSubstr("\n  wrist_1_joint  ")));
+  const Outcome unknown = kinecal("identify " + kFiles + "--hold wrist_1_jiont --force");
+  EXPECT_EQ(unknown.code, 1);
+  EXPECT_THAT(unknown.err, HasSubstr("--hold wrist_1_jiont: is not a candidate of the search; did "
+                                     "you mean 'wrist_1_joint'?"));
+}
+
+TEST_F(IdentifyProgram, SaysThatSamplesSupportNothing) {
+  ASSERT_EQ(kinecal("calibrate " + kFiles + "--offsets origin --output out").code, 0);
+  const std::string right = "--urdf out/calibrated.urdf --samples samples.yaml ";
+  const Outcome poses = kinecal("identify " + right);
+  EXPECT_EQ(poses.code, 0) << poses.err;
+  EXPECT_THAT(poses.out, HasSubstr("these samples support none of them: only unknown poses are "
+                                   "freed"));
+  const Outcome nothing =
+      kinecal("identify " + right + "--config out/config.yaml --hold tracker_frame,smr -o no.yaml");
+  EXPECT_EQ(nothing.code, 2) << nothing.err;
+  EXPECT_THAT(nothing.out, AllOf(HasSubstr("these samples support none of them: nothing is freed"),
+                                 HasSubstr("no.yaml was not written: no pose is unknown")));
+  EXPECT_FALSE(fs::exists(folder_ / "no.yaml"));
+}
+
+TEST_F(IdentifyProgram, RefusesSamplesOfAnotherRobot) {
+  const std::string own = read("ur5e.urdf");
+  for (const auto& [length, sentence] :
+       {std::pair("-0.612", "whatever is freed: the URDF is that of another robot"),
+        std::pair("-0.465", "of another version of it: these samples change elbow_joint_x by")}) {
+    const std::string urdf = std::regex_replace(own, std::regex("xyz=\"-0\\.425[0-9]* "),
+                                                std::string("xyz=\"") + length + " ");
+    ASSERT_NE(urdf, own);
+    write("other.urdf", urdf);
+    const Outcome refused = kinecal("identify --urdf other.urdf --samples samples.yaml");
+    EXPECT_EQ(refused.code, 2) << refused.out;
+    EXPECT_THAT(refused.out, AllOf(HasSubstr(sentence), HasSubstr("do not use"),
+                                   HasSubstr("identified.yaml was not written")));
+    EXPECT_EQ(kinecal("calibrate --urdf other.urdf --samples samples.yaml --dry-run --quiet").code,
+              2);
+  }
+}
+
+TEST_F(IdentifyProgram, NamesPosesThatDecideBetweenTwoExplanations) {
+  ASSERT_EQ(kinecal("identify " + kFiles).code, 0);
+  const Outcome chosen = kinecal("select-poses " + kFiles +
+                                 "--config identified.yaml --tell-apart "
+                                 "shoulder_lift_joint,shoulder_lift_joint_gear_ratio --count 10 "
+                                 "-o poses.yaml");
+  EXPECT_EQ(chosen.code, 0) << chosen.err;
+  EXPECT_THAT(chosen.out, AllOf(HasSubstr("which tell 'shoulder_lift_joint' and "
+                                          "'shoulder_lift_joint_gear_ratio' apart"),
+                                HasSubstr("\n  correlation  ")));
+  EXPECT_TRUE(fs::exists(folder_ / "poses.yaml"));
+  const Outcome none = kinecal("select-poses " + kFiles +
+                               "--config identified.yaml --tell-apart "
+                               "elbow_joint_z,wrist_1_joint_z --count 10");
+  EXPECT_EQ(none.code, 1);  // parallel axes
+  EXPECT_THAT(none.err, HasSubstr("no pose tells 'elbow_joint_z' and 'wrist_1_joint_z' apart"));
+}
+
+}  // namespace
+}  // namespace kinecal
