@@ -10,6 +10,7 @@
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/solve/statistics.hpp"
 #include "kinecal/study/exact_samples.hpp"
 #include "kinecal/study/seeded_random.hpp"
@@ -158,13 +159,12 @@ class SimulatedArm {
     }
     for (const int k : wrong) {
       for (const int p : task_.candidates[static_cast<std::size_t>(k)].parameters) {
-        const bool metres = truth_[p].unit == "m", gear = truth_[p].unit == "1";
-        truth_[p].value = random_.either_sign(gear     ? 0.005
-                                              : metres ? 0.001
-                                                       : 0.004,
-                                              gear     ? 0.01
-                                              : metres ? 0.004
-                                                       : 0.015);
+        const std::string& unit = truth_[p].unit;
+        const double least = unit == "1"             ? 0.005
+                             : unit == "m"           ? 0.001
+                             : unit.ends_with("/Nm") ? 2e-5
+                                                     : 0.004;
+        truth_[p].value = random_.either_sign(least, unit == "1" ? 0.01 : 4.0 * least);
       }
     }
     measure(samples_);
@@ -211,6 +211,7 @@ class SimulatedArm {
       sample.observations = {{"arm", {{"smr", Vector3<double>::Zero()}}},
                              {"tracker", {{"tracker_frame", random_.normal_vector()}}}};
     }
+    set_joint_moves(all);
     return all;
   }
   void measure(std::vector<Sample>& samples) {

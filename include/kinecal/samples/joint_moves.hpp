@@ -1,7 +1,8 @@
-// The direction from which each joint came to its pose, from the order of a recording.
+// How joints moved in a recording: the direction from which each came to a pose, and velocities.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <span>
@@ -31,6 +32,31 @@ inline void set_joint_moves(std::span<Sample> samples) {
         known->second = {position, move};
       }
       sample.joint_moves[i] = known->second.move;
+    }
+  }
+}
+
+/// Sets Sample::joint_velocities from neighbours in time, where a recording has none: the slope from
+/// the sample before to the one after, of those within 0.2 s that have the same joints.
+/// @param samples  in the order of the recording
+inline void set_joint_velocities(std::span<Sample> samples) {
+  constexpr std::chrono::milliseconds kNear(200);
+  for (const Sample& sample : samples) {
+    if (!sample.stamp || !sample.joint_velocities.empty()) return;
+  }
+  const auto near = [&](const Sample& before, const Sample& after) {
+    const auto gap = *after.stamp - *before.stamp;
+    return gap.count() > 0 && gap <= kNear && after.joint_names == before.joint_names;
+  };
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const bool has_before = i > 0 && near(samples[i - 1], samples[i]);
+    const bool has_after = i + 1 < samples.size() && near(samples[i], samples[i + 1]);
+    if (!has_before && !has_after) continue;
+    const Sample &before = samples[has_before ? i - 1 : i], &after = samples[has_after ? i + 1 : i];
+    const double seconds = std::chrono::duration<double>(*after.stamp - *before.stamp).count();
+    for (std::size_t j = 0; j < before.joint_positions.size(); ++j) {
+      samples[i].joint_velocities.push_back((after.joint_positions[j] - before.joint_positions[j]) /
+                                            seconds);
     }
   }
 }

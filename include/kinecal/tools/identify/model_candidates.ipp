@@ -80,8 +80,30 @@ struct ModelCandidate {
   return neighbours;
 }
 
+/// Links beyond a joint whose masses could pull at it, at least 0.15 m apart, and the last ones.
+[[nodiscard]] inline std::set<std::string> links_beyond(const Robot& robot,
+                                                        const std::string& joint,
+                                                        const std::vector<RuntimeChain>& chains) {
+  constexpr double kApart = 0.15;  // metres
+  std::set<std::string> links;
+  for (const RuntimeChain& chain : chains) {
+    bool beyond = false;
+    double way = 0.0;
+    for (const ChainJoint& one : chain.joints) {
+      if (beyond) way += one.fixed.translation.norm();
+      if (beyond && way > kApart && moves(one.type)) {
+        links.insert(robot.joint(one.name).child);
+        way = 0.0;
+      }
+      beyond |= one.drive.joint == joint && !one.reversed;
+    }
+    if (beyond && way + chain.tail.translation.norm() > 0.0) links.insert(chain.tip);
+  }
+  return links;
+}
+
 /// Joint models of the joints that move a sensor, and lags of the sensors.  Couplings are of neighbours;
-/// masses that the URDF does not have are not searched for.
+/// where the URDF has no masses, sag is by the mass of a link.
 [[nodiscard]] inline std::vector<ModelCandidate> model_candidates(const Config& config,
                                                                   const Robot& robot,
                                                                   std::span<const Sample> samples) {
@@ -102,6 +124,12 @@ struct ModelCandidate {
         const bool needs_moves = names.front() == parameter_name(joint.name, "backlash");
         if (!needs_moves || came_from_both_sides(joint.name, samples))
           all.push_back({own, std::move(names)});
+      } else if (model->partner() == ModelPartner::link) {
+        if (!robot.weight().links.empty()) continue;
+        for (const std::string& link : links_beyond(robot, joint.name, chains)) {
+          ModelCandidate& of_link = all.emplace_back(ModelCandidate{own, names});
+          for (std::string& name : of_link.parameters) name += "_" + link;
+        }
       } else if (model->partner() == ModelPartner::joint && !joint.mimic) {
         for (const std::string& other : neighbours_of(joint.name, chains)) {
           ModelCandidate& with_other = all.emplace_back(ModelCandidate{own, names});
