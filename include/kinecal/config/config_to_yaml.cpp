@@ -174,8 +174,8 @@ std::string config_to_yaml(const Config& config, const std::string& title,
                       detail::name_to_yaml(config.base_link), step.max_num_iterations);
   if (config.gravity) {
     const Vector3<double>& g = *config.gravity;
-    text += fmt::format("gravity: {{x: {}, y: {}, z: {}}}\n", detail::number_to_yaml(g.x()),
-                        detail::number_to_yaml(g.y()), detail::number_to_yaml(g.z()));
+    text += fmt::format("gravity: {{x: {}, y: {}, z: {}}}\n", number_to_yaml(g.x()),
+                        number_to_yaml(g.y()), number_to_yaml(g.z()));
   }
   if (!config.payload_link.empty())
     text += fmt::format("payload_link: {}\n", detail::name_to_yaml(config.payload_link));

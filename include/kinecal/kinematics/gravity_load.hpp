@@ -8,80 +8,85 @@
 
 #include <map>
 #include <string>
-#include <utility>
+#include <vector>
 
+#include "kinecal/geometry/rotation.hpp"
 #include "kinecal/kinematics/joint_state.hpp"
 #include "kinecal/kinematics/robot.hpp"
 
 namespace kinecal {
 
-/// The loads of a robot's joints in a pose.
+/// What gravity does to a robot's joints in a pose.
 class GravityLoads {
  public:
+  /// Loads by joint that does not mimic: torque about its axis, N m, or force along it, N; joints
+  /// without one are absent.
+  using ByJoint = std::map<std::string, double>;
+
   /// @param robot        must outlive this
   /// @param position_of  callable: name of a joint that does not mimic -> its position, radians or
   ///                     metres
   template <class PositionOf>
   GravityLoads(const Robot& robot, PositionOf&& position_of) : robot_(robot) {
     for (const Joint& joint : robot.joints()) {
+      State& state = states_.emplace_back();
       if (!moves(joint.type)) continue;
-      const Mimic by = drive(robot, joint);
-      drives_.emplace(joint.name, Drive{by, by.multiplier * position_of(by.joint) + by.offset});
+      state.by = drive(robot, joint);
+      state.position = state.by.multiplier * position_of(state.by.joint) + state.by.offset;
     }
   }
 
-  /// Adds a point mass to a link.
+  /// Adds the loads of a point mass.
   /// @param center  (3) metres, in the link
   /// @param mass    kg
-  void add(const std::string& link, const Vector3<double>& center, double mass) {
+  void add(const std::string& link, const Vector3<double>& center, double mass, ByJoint& loads) {
+    const Joint* joint = robot_.parent_joint(link);
+    if (joint == nullptr) return;  // it is on the root
     const Vector3<double> force = mass * robot_.weight().gravity;
-    const Vector3<double> place = pose(link) * center;
-    for (const Joint* joint = robot_.parent_joint(link); joint != nullptr;
-         joint = robot_.parent_joint(joint->parent)) {
+    const Vector3<double> place = passed(*joint).child * center;
+    for (; joint != nullptr; joint = robot_.parent_joint(joint->parent)) {
       if (!moves(joint->type)) continue;
-      const Pose<double> at = pose(joint->parent) * joint->origin;
-      const Vector3<double> axis = at.rotation * joint->axis;
+      const State& state = passed(*joint);
       const Vector3<double> velocity =
-          turns(joint->type) ? Vector3<double>(axis.cross(place - at.translation)) : axis;
-      const Mimic& by = drives_.at(joint->name).by;
-      loads_[by.joint] += by.multiplier * force.dot(velocity);
+          turns(joint->type) ? cross(state.axis, Vector3<double>(place - state.origin))
+                             : state.axis;
+      loads[state.by.joint] += state.by.multiplier * force.dot(velocity);
     }
   }
-  /// Adds the masses of all links.
-  void add_links() {
-    for (const auto& [link, of] : robot_.weight().links) add(link, of.center, of.mass);
-  }
-
-  /// The load of a joint that does not mimic: torque about its axis, N m, or force along it, N.
-  [[nodiscard]] double of(const std::string& joint) const {
-    const auto known = loads_.find(joint);
-    return known == loads_.end() ? 0.0 : known->second;
+  /// The loads of all links.
+  [[nodiscard]] ByJoint of_links() {
+    ByJoint loads;
+    for (const auto& [link, of] : robot_.weight().links) add(link, of.center, of.mass, loads);
+    return loads;
   }
 
  private:
-  struct Drive {
-    Mimic by;
-    double position;
+  struct State {
+    Mimic by;  ///< the joint that drives it
+    double position = 0.0;
+    bool is_passed = false;        ///< what follows is known
+    Vector3<double> origin, axis;  ///< (3) in the root link
+    Pose<double> child;            ///< the child link in the root link
   };
 
-  /// The pose of a link in the root link.
-  const Pose<double>& pose(const std::string& link) {
-    if (const auto known = poses_.find(link); known != poses_.end()) return known->second;
-    Pose<double> of_link;
-    if (const Joint* joint = robot_.parent_joint(link); joint != nullptr) {
-      of_link = pose(joint->parent) * joint->origin;
-      if (moves(joint->type)) {
-        of_link = of_link * joint_pose(joint->type, joint->axis,
-                                       make_joint_state(drives_.at(joint->name).position));
-      }
-    }
-    return poses_.emplace(link, of_link).first->second;
+  /// A joint whose pose in the root link is known.
+  const State& passed(const Joint& joint) {
+    State& state = states_[static_cast<std::size_t>(&joint - robot_.joints().data())];
+    if (state.is_passed) return state;
+    const Joint* before = robot_.parent_joint(joint.parent);
+    const Pose<double> frame =
+        before == nullptr ? joint.origin : passed(*before).child * joint.origin;
+    state.origin = frame.translation;
+    state.axis = frame.rotation * joint.axis;
+    state.child = moves(joint.type)
+                      ? frame * joint_pose(joint.type, joint.axis, make_joint_state(state.position))
+                      : frame;
+    state.is_passed = true;
+    return state;
   }
 
   const Robot& robot_;
-  std::map<std::string, Drive> drives_;  ///< of the joints that move
-  std::map<std::string, Pose<double>> poses_;
-  std::map<std::string, double> loads_;
+  std::vector<State> states_;  ///< of the robot's joints
 };
 
 }  // namespace kinecal

@@ -69,14 +69,16 @@ class JointModelOf final : public AnyJointModel {
 /// The joint models of this program.  Do not change them while other threads use them.
 [[nodiscard]] std::vector<std::shared_ptr<const AnyJointModel>>& joint_models();
 
+namespace detail {
+void add_joint_model(std::shared_ptr<const AnyJointModel> model);
+}  // namespace detail
+
 /// Adds a joint model: configurations and crates then know its parameters.  Added again, it changes
 /// nothing.
 /// @throws std::invalid_argument  if another model has a parameter of one of its names
-void register_joint_model(std::shared_ptr<const AnyJointModel> model);
-/// The same.
 template <class M>
 void register_joint_model(const M& model) {
-  register_joint_model(std::make_shared<const detail::JointModelOf<M>>(model));
+  detail::add_joint_model(std::make_shared<const detail::JointModelOf<M>>(model));
 }
 
 /// A parameter of a joint model on a robot.

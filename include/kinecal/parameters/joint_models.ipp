@@ -74,7 +74,7 @@ KINECAL_INLINE std::vector<std::shared_ptr<const AnyJointModel>>& joint_models()
   return models;
 }
 
-KINECAL_INLINE void register_joint_model(std::shared_ptr<const AnyJointModel> model) {
+KINECAL_INLINE void detail::add_joint_model(std::shared_ptr<const AnyJointModel> model) {
   const AnyJointModel& added = *model;
   for (const auto& known : joint_models()) {
     const AnyJointModel& other = *known;

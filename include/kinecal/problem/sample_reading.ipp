@@ -37,38 +37,42 @@ class SampleLoads {
 
   [[nodiscard]] const Robot& robot() const { return robot_; }
   /// Of all links and the payload.
-  [[nodiscard]] const GravityLoads& of_links() {
+  [[nodiscard]] double of_links(const std::string& joint) {
     if (!of_links_) {
-      of_links_.emplace(without_masses());
-      of_links_->add_links();
+      of_links_ = loads().of_links();
       const std::string& link = robot_.weight().payload;
       const auto payload = sample_.conditions.find("payload");
       if (!link.empty() && payload != sample_.conditions.end()) {
-        of_links_->add(link, Vector3<double>::Zero(), payload->second);
+        loads().add(link, Vector3<double>::Zero(), payload->second, *of_links_);
       }
     }
-    return *of_links_;
+    return of(joint, *of_links_);
   }
   /// Of one kilogram at the origin of a link.
-  [[nodiscard]] const GravityLoads& of_kilogram(const std::string& link) {
-    auto known = of_kilogram_.find(link);
-    if (known == of_kilogram_.end()) {
-      known = of_kilogram_.emplace(link, without_masses()).first;
-      known->second.add(link, Vector3<double>::Zero(), 1.0);
-    }
-    return known->second;
+  [[nodiscard]] double of_kilogram(const std::string& joint, const std::string& link) {
+    const auto [known, is_new] = of_kilogram_.try_emplace(link);
+    if (is_new) loads().add(link, Vector3<double>::Zero(), 1.0, known->second);
+    return of(joint, known->second);
   }
 
  private:
-  [[nodiscard]] GravityLoads without_masses() const {
-    return {robot_,
-            [&](const std::string& joint) { return sample_.position(joint).value_or(0.0); }};
+  [[nodiscard]] static double of(const std::string& joint, const GravityLoads::ByJoint& loads) {
+    const auto known = loads.find(joint);
+    return known == loads.end() ? 0.0 : known->second;
+  }
+  [[nodiscard]] GravityLoads& loads() {
+    if (!loads_) {
+      loads_.emplace(
+          robot_, [&](const std::string& joint) { return sample_.position(joint).value_or(0.0); });
+    }
+    return *loads_;
   }
 
   const Robot& robot_;
   const Sample& sample_;
-  std::optional<GravityLoads> of_links_;
-  std::map<std::string, GravityLoads> of_kilogram_;
+  std::optional<GravityLoads> loads_;
+  std::optional<GravityLoads::ByJoint> of_links_;
+  std::map<std::string, GravityLoads::ByJoint> of_kilogram_;  ///< by link
 };
 
 /// What a sample says of a joint.
@@ -101,9 +105,9 @@ class SampleReading final : public JointReading {
                       "' moved last is unknown; backlash needs samples in the order of their "
                       "recording, or velocities");
   }
-  [[nodiscard]] double load() const override { return loads_.of_links().of(joint_); }
+  [[nodiscard]] double load() const override { return loads_.of_links(joint_); }
   [[nodiscard]] double load_of(const std::string& link) const override {
-    return loads_.of_kilogram(link).of(joint_);
+    return loads_.of_kilogram(joint_, link);
   }
 
  private:

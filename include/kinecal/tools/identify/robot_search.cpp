@@ -105,7 +105,7 @@ RobotSearch search_robot(const Config& config, const Robot& robot, std::span<con
   RobotSearch all;
   Diagnostics diagnostics;
   Calibration calibration =
-      assemble(with_all_candidates(config, robot), robot, samples, diagnostics);
+      assemble(with_all_candidates(config, robot, samples), robot, samples, diagnostics);
   diagnostics.throw_if_errors();
   const AnyProblem& problem = *calibration.steps.front().problem;
   all.task = identify_task(config, problem, samples, limits.geometry_only);

@@ -53,7 +53,7 @@ Explanations free_explanations(const Config& config, const Robot& robot,
   }
   Diagnostics diagnostics;
   const Calibration calibration =
-      assemble(with_all_candidates(config, robot), robot, samples, diagnostics);
+      assemble(with_all_candidates(config, robot, samples), robot, samples, diagnostics);
   diagnostics.throw_if_errors();
   const AnyProblem& problem = *calibration.steps.front().problem;
   const IdentifyTask task = identify_task(config, problem, samples);
