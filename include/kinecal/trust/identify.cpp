@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "kinecal/trust/identification.ipp"
+#include "kinecal/trust/whole_frames.ipp"
 
 namespace kinecal {
 
@@ -85,6 +86,7 @@ Identified run(Identification& search) {
     found.chosen = std::move(chosen);
     found.result = std::move(result);
   }
+  if (found.result.converged) take_whole_frames(search, found);
   if (!found.result.converged) return found;
   const ParameterSearch linear = search.linearized();
   const std::vector<int> base = linear.independent(search.base());
