@@ -14,6 +14,7 @@
 #include "fit.hpp"
 #include "input.hpp"
 #include "kinecal/config/doubts/judge_causes.hpp"
+#include "kinecal/config/doubts/rising.hpp"
 #include "kinecal/report.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
@@ -121,6 +122,22 @@ std::vector<OutputFile> with_copies(const ResultOptions& options, const Input& i
 }
 
 namespace {
+
+/// Says what does not read the zeros that were written, if the URDF had none of this kind before.
+std::string offsets_text(const ResultOptions& options, const Input& input,
+                         const ParameterTable& table) {
+  const auto has_zero = [&](const Joint& joint) {
+    const int zero = table.find(joint.name);
+    return moves(joint.type) && zero >= 0 && table[zero].value != 0.0;
+  };
+  const std::vector<Joint>& joints = input.robot.joints();
+  if (options.offsets != "rising" || std::none_of(joints.begin(), joints.end(), has_zero))
+    return "";
+  if (!rising_of(input.urdf_text, input.urdf).empty()) return "";
+  return "\nzeros of joints are in <calibration rising> of the URDF, which robot_state_publisher, "
+         "MoveIt and "
+         "most drivers do not read; --offsets origin puts them into the origins, which all read\n";
+}
 
 /// The scene must not replace an input or a report, and another file only on demand.
 void check_scene(const CalibrateOptions& options) {
@@ -260,6 +277,7 @@ int calibrate(const CalibrateOptions& options) {
   }
   const double writing = seconds_since(start) - reading - fitting;
   if (!manner.json && !manner.quiet) {
+    if (!files.empty()) show(offsets_text(options, input, findings.result.table), manner);
     show("\n" + times_text(input.samples.size(), findings.result, reading, fitting, writing),
          manner);
   }

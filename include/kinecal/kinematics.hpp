@@ -17,5 +17,6 @@
 #include "kinecal/kinematics/static_chain.hpp"
 #include "kinecal/kinematics/static_pose.hpp"
 #include "kinecal/kinematics/static_robot.hpp"
+#include "kinecal/kinematics/true_position.hpp"
 #include "kinecal/kinematics/twist_walker.hpp"
 #include "kinecal/kinematics/walk.hpp"

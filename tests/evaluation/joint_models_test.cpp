@@ -6,6 +6,7 @@
 
 #include "kinecal/errors.hpp"
 #include "kinecal/kinematics/gravity_load.hpp"
+#include "kinecal/kinematics/true_position.hpp"
 #include "support/oracle_problem.hpp"
 #include "support/sums.hpp"
 
@@ -249,6 +250,45 @@ TEST_F(MeasuredJoints, HaveModelsOfAUser) {
   EXPECT_NEAR(of.at("elbow_worm_sin"), 0.001, 1e-9);
   EXPECT_NEAR(of.at("elbow_worm_cos"), 0.002, 1e-9);
   EXPECT_THROW(register_joint_model(OtherWorm{}), std::invalid_argument);
+}
+
+TEST_F(MeasuredJoints, MoveAsTheHeaderForDriversSays) {
+  const std::vector<std::pair<std::string, double JointErrors::*>> all = {
+      {"elbow", &JointErrors::offset},
+      {"elbow_gear_ratio", &JointErrors::gear_ratio},
+      {"elbow_eccentric_sin", &JointErrors::eccentric_sin},
+      {"elbow_eccentric_cos", &JointErrors::eccentric_cos},
+      {"elbow_second_harmonic_sin", &JointErrors::second_harmonic_sin},
+      {"elbow_second_harmonic_cos", &JointErrors::second_harmonic_cos},
+      {"elbow_sag", &JointErrors::sag},
+      {"elbow_backlash", &JointErrors::backlash},
+      {"elbow_load_backlash", &JointErrors::load_backlash},
+      {"elbow_coupling_wrist", &JointErrors::coupling}};
+  std::vector<std::string> names;
+  for (const auto& [name, member] : all) names.push_back(name);
+  const Problem of_models = problem(names);
+  const SampledChain& chain = of_models.sensors()[0].chains()[0];
+  Sample sample = samples_[3];
+  sample.joint_moves.assign(sample.joint_names.size(), -0.3);
+  GravityLoads loads(
+      robot_, [&](const std::string& joint) { return sample.position(joint).value_or(0.0); });
+  MeasuredJoint measured{position(sample, "elbow"), loads.of_links().at("elbow"), -1.0,
+                         position(sample, "wrist")};
+  JointErrors errors;
+  std::vector<double> values(static_cast<std::size_t>(of_models.table().size()), 0.0);
+  double value = 0.01;
+  for (const auto& [name, member] : all) {
+    errors.*member = value = -0.9 * value;
+    values[static_cast<std::size_t>(of_models.table().index(name))] = value;
+  }
+  const Corrections<double> corrections = corrections_for<double>(chain.parameters(), values);
+  Sample moved = sample;  // read by an encoder without errors
+  position(moved, "elbow") = true_position(errors, measured);
+  const Problem without = problem({});
+  const SampledChain& plain = without.sensors()[0].chains()[0];
+  const std::vector<double> none(static_cast<std::size_t>(without.table().size()), 0.0);
+  const Pose<double> expected = plain.tip(moved, corrections_for<double>(plain.parameters(), none));
+  EXPECT_LT((chain.tip(sample, corrections).translation - expected.translation).norm(), 1e-12);
 }
 
 TEST_F(MeasuredJoints, AMimicJointHasErrorsOfItsOwn) {

@@ -61,7 +61,8 @@ enum class ModelPartner { none, joint, link };
 /// A gear ratio that differs from the driver's: q = (1 + gear_ratio) q_measured.
 struct GearRatio {
   static constexpr std::array<ParameterInfo, 1> kParameters = {
-      {{"gear_ratio", "1"}}};  ///< relative
+      {{"gear_ratio", "1"}}};                                          ///< relative
+  static constexpr std::array<std::string_view, 1> kFormulas = {"q"};  ///< effects
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
   /// Effects of the parameters.
@@ -74,6 +75,8 @@ struct GearRatio {
 struct EccentricEncoder {
   static constexpr std::array<ParameterInfo, 2> kParameters = {
       {{"eccentric_sin", "rad"}, {"eccentric_cos", "rad"}}};  ///< amplitudes
+  static constexpr std::array<std::string_view, 2> kFormulas = {"sin(q)",
+                                                                "(cos(q) - 1)"};  ///< effects
   /// Effects of the parameters.
   [[nodiscard]] std::array<double, 2> operator()(const JointReading& joint) const {
     return {std::sin(joint.position()), std::cos(joint.position()) - 1.0};
@@ -85,6 +88,8 @@ struct EccentricEncoder {
 struct SecondHarmonic {
   static constexpr std::array<ParameterInfo, 2> kParameters = {
       {{"second_harmonic_sin", "rad"}, {"second_harmonic_cos", "rad"}}};  ///< amplitudes
+  static constexpr std::array<std::string_view, 2> kFormulas = {"sin(2 q)",
+                                                                "(cos(2 q) - 1)"};  ///< effects
   /// Effects of the parameters.
   [[nodiscard]] std::array<double, 2> operator()(const JointReading& joint) const {
     return {std::sin(2.0 * joint.position()), std::cos(2.0 * joint.position()) - 1.0};
@@ -95,7 +100,9 @@ struct SecondHarmonic {
 /// Source: Khalil, Besnard, Geometric Calibration of Robots with Flexible Joints and Links.
 struct Sag {
   static constexpr std::array<ParameterInfo, 1> kParameters = {
-      {{"sag", "rad/Nm"}}};                   ///< compliance
+      {{"sag", "rad/Nm"}}};  ///< compliance
+  static constexpr std::array<std::string_view, 1> kFormulas = {
+      "load (gravity about the axis, N m)"};  ///< effects
   static constexpr bool kNeedsMasses = true;  ///< those of the URDF
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
@@ -108,7 +115,9 @@ struct Sag {
 /// The same for the unknown mass of one link: compliance times mass.
 struct LinkSag {
   static constexpr std::array<ParameterInfo, 1> kParameters = {
-      {{"link_sag", "rad kg/Nm"}}};                             ///< of it
+      {{"link_sag", "rad kg/Nm"}}};  ///< of it
+  static constexpr std::array<std::string_view, 1> kFormulas = {
+      "load of 1 kg there (N m)"};                              ///< effects
   static constexpr ModelPartner kPartner = ModelPartner::link;  ///< the link with the mass
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
@@ -122,6 +131,7 @@ struct LinkSag {
 /// A joint that another one moves along: a wrist whose cable runs over the elbow, a parallelogram.
 struct Coupling {
   static constexpr std::array<ParameterInfo, 1> kParameters = {{{"coupling", "1"}}};  ///< share
+  static constexpr std::array<std::string_view, 1> kFormulas = {"q of that joint"};   ///< effects
   static constexpr ModelPartner kPartner = ModelPartner::joint;  ///< the joint that moves it
   /// True for joints that may have it: all.
   [[nodiscard]] static constexpr bool suits(JointType, bool) { return true; }
@@ -135,6 +145,8 @@ struct Coupling {
 /// Play of a gear with its encoder on the motor: the joint lags by half of it.
 struct Backlash {
   static constexpr std::array<ParameterInfo, 1> kParameters = {{{"backlash", "rad"}}};  ///< the gap
+  static constexpr std::array<std::string_view, 1> kFormulas = {
+      "(-1/2 after a motion up, 1/2 after one down)"};  ///< effects
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
   /// Effects of the parameters.
@@ -146,8 +158,10 @@ struct Backlash {
 /// Play that gravity takes up: the joint rests on that side of the gap to which its load pulls.
 struct LoadBacklash {
   static constexpr std::array<ParameterInfo, 1> kParameters = {
-      {{"load_backlash", "rad"}}};            ///< gap
-  static constexpr bool kNeedsMasses = true;  ///< those of the URDF
+      {{"load_backlash", "rad"}}};  ///< gap
+  static constexpr std::array<std::string_view, 1> kFormulas = {
+      "(1/2 where gravity pulls up, else -1/2)"};  ///< effects
+  static constexpr bool kNeedsMasses = true;       ///< those of the URDF
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
   /// Effects of the parameters.
@@ -161,6 +175,8 @@ struct LoadBacklash {
 struct MimicErrors {
   static constexpr std::array<ParameterInfo, 2> kParameters = {
       {{"mimic_multiplier", "1"}, {"mimic_offset", "rad"}}};  ///< added to the URDF's
+  static constexpr std::array<std::string_view, 2> kFormulas = {"q of the joint that it mimics",
+                                                                "1"};  ///< effects
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return is_mimic; }
   /// Effects of the parameters.
@@ -182,6 +198,12 @@ template <class M>
 [[nodiscard]] constexpr ModelPartner partner_of() {
   if constexpr (requires { M::kPartner; }) return M::kPartner;
   return ModelPartner::none;
+}
+/// The effect of a parameter as a formula of the reading q; empty if the model has none.
+template <class M>
+[[nodiscard]] constexpr std::string_view formula_of(std::size_t part) {
+  if constexpr (requires { M::kFormulas; }) return M::kFormulas[part];
+  return {};
 }
 /// True if a model needs the masses of the robot's links.
 template <class M>

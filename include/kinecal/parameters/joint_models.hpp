@@ -26,7 +26,9 @@ class AnyJointModel {
 
   [[nodiscard]] virtual std::span<const ParameterInfo> parameters() const = 0;  ///< of a joint
   [[nodiscard]] virtual ModelPartner partner() const = 0;                       ///< in their names
-  [[nodiscard]] virtual bool needs_masses() const = 0;                          ///< of the links
+  /// The effect of a parameter as a formula of the reading q, for people; may be empty.
+  [[nodiscard]] virtual std::string_view formula(std::size_t part) const = 0;
+  [[nodiscard]] virtual bool needs_masses() const = 0;  ///< of the links
   /// True if a joint of this type, which moves, may have it.
   [[nodiscard]] virtual bool suits(JointType type, bool is_mimic) const = 0;
   /// The effect of a parameter: radians or metres per unit.
@@ -46,6 +48,9 @@ class JointModelOf final : public AnyJointModel {
     return M::kParameters;
   }
   [[nodiscard]] ModelPartner partner() const override { return partner_of<M>(); }
+  [[nodiscard]] std::string_view formula(std::size_t part) const override {
+    return formula_of<M>(part);
+  }
   [[nodiscard]] bool needs_masses() const override { return kinecal::needs_masses<M>(); }
   [[nodiscard]] bool suits(JointType type, bool is_mimic) const override {
     return suits_joint<M>(type, is_mimic);

@@ -117,7 +117,7 @@ std::vector<OutputFile> result_files(const Robot& robot, const std::string& urdf
     files.push_back({detail::camera_file("rgb", name, options.date), content});
     refer("rgb_info", name, files.back().name);
   }
-  std::string values = detail::values_yaml(result, options.deviations);
+  std::string values = detail::values_yaml(robot, result, options.deviations);
   if (!references.empty()) values += references.substr(1) + "\n";
   values += fmt::format("urdf: {}\n", urdf);
   files.push_back({detail::dated("calibration", ".yaml", options.date), values});

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "kinecal/files/yaml/yaml_text.hpp"
+#include "kinecal/parameters/joint_models.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal::detail {
@@ -30,9 +32,16 @@ namespace kinecal::detail {
                       : fmt::format("{}_{}{}", stem, date, ending);
 }
 
+/// "; q_true = q + this * sin(q)" of a parameter of a joint model, which no URDF can hold; else empty.
+[[nodiscard]] inline std::string formula_text(const Robot& robot, const std::string& name) {
+  const std::optional<JointModelParameter> of = joint_model_parameter(robot, name);
+  if (!of || of->model->formula(of->part).empty()) return {};
+  return fmt::format("q_true = q + this * {}", of->model->formula(of->part));
+}
+
 /// Lines `name: value` for the parameters that some step freed, and for those held at nonzero
-/// values.  Standard deviations are comments.
-[[nodiscard]] inline std::string values_yaml(const CalibrationResult& result,
+/// values.  Standard deviations are comments, like the formulas of joint models.
+[[nodiscard]] inline std::string values_yaml(const Robot& robot, const CalibrationResult& result,
                                              const std::map<int, double>& deviations) {
   std::string text;
   for (int i = 0; i < result.table.size(); ++i) {
@@ -41,14 +50,15 @@ namespace kinecal::detail {
     if (!calibrated && result.table[i].value == 0.0) continue;
     text += fmt::format("{}: {}", name_to_yaml(result.table[i].name),
                         number_to_yaml(result.table[i].value));
-    const auto deviation = deviations.find(i);
-    if (deviation == deviations.end()) {
-      text += "\n";
-    } else if (std::isfinite(deviation->second)) {
-      text += fmt::format("  # +- {:.2g}\n", deviation->second);
-    } else {
-      text += "  # not determined\n";
+    std::string comment;
+    if (const auto deviation = deviations.find(i); deviation != deviations.end()) {
+      comment = std::isfinite(deviation->second) ? fmt::format("+- {:.2g}", deviation->second)
+                                                 : "not determined";
     }
+    const std::string formula = formula_text(robot, result.table[i].name);
+    if (!comment.empty() && !formula.empty()) comment += "; ";
+    comment += formula;
+    text += comment.empty() ? "\n" : "  # " + comment + "\n";
   }
   return text;
 }
