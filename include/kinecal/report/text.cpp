@@ -65,11 +65,13 @@ std::string design_effect_note(double effect, double readings, int alike) {
 
 namespace detail {
 
-/// "1.234 deg", "5.678 mm" or "0.910 %".
+/// "1.234 deg", "5.678 mm", "0.910 %", "2.5 ms" or "1.2e-05 rad/Nm".
 std::pair<std::string, std::string> for_people(double value, const std::string& unit) {
   if (unit == "rad") return {fmt::format("{:.3f}", value * 180.0 / std::numbers::pi), "deg"};
   if (unit == "m") return {fmt::format("{:.3f}", 1e3 * value), "mm"};
-  return {fmt::format("{:.3f}", 1e2 * value), "%"};
+  if (unit == "1") return {fmt::format("{:.3f}", 1e2 * value), "%"};
+  if (unit == "s") return {fmt::format("{:.3f}", 1e3 * value), "ms"};
+  return {fmt::format("{:.3g}", value), unit};
 }
 
 }  // namespace detail

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <string>
 
 #include "kinecal/text/reading.hpp"
 
@@ -23,9 +24,14 @@ KINECAL_INLINE std::string reading(double value, std::string_view unit) {
   } else if (unit == "px") {
     of = " px";
   }
+  if (unit == "s") {
+    shown = 1e3 * value;
+    of = " ms";
+  }
   char text[48];
   (void)std::snprintf(text, sizeof text, "%.3g%s", shown, of);
-  return text;
+  const bool is_ratio = unit.find('/') != std::string_view::npos;  // of joint models: "rad/Nm"
+  return is_ratio ? std::string(text) + " " + std::string(unit) : text;
 }
 
 }  // namespace kinecal

@@ -52,6 +52,9 @@ struct Limits {
     return {15.0 * kDegree, 45.0 * kDegree};
   }
   if (problem.robot().has_joint(owner)) {
+    if (p.unit == "rad/Nm") return {1e-3, 1e-2};  // of joint models: a servo yields by 1e-3
+    if (p.unit == "m/N") return {1e-5, 1e-4};
+    if (p.unit.ends_with("kg/Nm") || p.unit.ends_with("kg/N")) return {1e-2, 1e-1};
     const Joint& joint = problem.robot().joint(owner);
     const bool moving = moves(joint.type);
     if (p.unit == "m") return moving ? plausible_length_change(problem, joint) : Limits{0.2, 1.0};
@@ -59,6 +62,7 @@ struct Limits {
   }
   if (problem.frames().contains(owner)) return {kNever, kNever};
   if (p.unit == "m") return {0.1, kNever};
+  if (p.unit == "s") return {0.2, 1.0};  // the lag of a sensor
   return p.unit == "1" ? Limits{0.09, 0.3} : Limits{kNever, kNever};
 }
 
