@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
+#include <set>
 
 #include "kinecal/errors.hpp"
 #include "support/static_robot.hpp"
@@ -193,6 +195,37 @@ TEST(Crate, NamesItsParametersAsAConfigurationDoes) {
   EXPECT_EQ(table["mount_a"].unit, "rad");
   EXPECT_EQ(table["camera_z_offset"].unit, "m");
   EXPECT_EQ(table["camera_fx"].unit, "1");
+}
+
+/// Ten times a turn.
+struct Worm {
+  static constexpr std::array<ParameterInfo, 2> kParameters = {
+      {{"worm_sin", "rad"}, {"worm_cos", "rad"}}};
+  std::array<double, 2> operator()(const JointReading& joint) const {
+    return {std::sin(10.0 * joint.position()), std::cos(10.0 * joint.position()) - 1.0};
+  }
+};
+
+TEST(Crate, FreesJointModelsOfItsOwnCouplingsAndLags) {
+  using Modelled =
+      Crate<Arm, Camera, OwnJointModel<"elbow", Worm>, SensorParameters<"camera", "lag">,
+            JointModelParameters<"elbow", "coupling_pan", "backlash">,
+            Block<"hand_eye", PointToPoint, "camera", "arm">>;
+  const ParameterTable table = Modelled().table({});
+  EXPECT_EQ(table["elbow_worm_sin"].unit, "rad");
+  EXPECT_EQ(table["elbow_coupling_pan"].unit, "1");
+  EXPECT_EQ(table["camera_lag"].unit, "s");
+  const Problem problem = Modelled().problem<Packet>(table);
+  EXPECT_EQ(problem.owners()[static_cast<std::size_t>(table.index("elbow_worm_cos"))], "elbow");
+  EXPECT_EQ(problem.owners()[static_cast<std::size_t>(table.index("camera_lag"))], "camera");
+  std::set<std::string> moved;
+  for (const SampledChain& chain : problem.sensors()[0].chains()) {
+    for (const JointIndices& joint : chain.parameters()) {
+      for (const int p : joint.model) moved.insert(table[p].name);
+    }
+  }
+  EXPECT_THAT(moved, testing::IsSupersetOf({"elbow_worm_sin", "elbow_worm_cos", "elbow_backlash",
+                                            "elbow_coupling_pan"}));
 }
 
 TEST(Crate, StartsCamerasWhereTheirDriversWere) {

@@ -142,7 +142,7 @@ KINECAL_INLINE std::vector<double> MountedSensor::joints(const Sample& sample,
     throw SampleError("joint '" + name + "' is not in the sample; sensor '" + mount_.name +
                       "' needs it" + did_you_mean(name, sample.joint_names));
   }
-  const ModelledMotions motions = chain.motions(sample);
+  const ModelledMotions motions = chain.motions(sample, SampledChain::Unknown::refused);
   std::vector<double> numbers;
   for (std::size_t i = 0; i < motions.measured.size(); ++i) {
     const JointState<double>& state = motions[i];

@@ -79,11 +79,13 @@ class SampleLoads {
 class SampleReading final : public JointReading {
  public:
   /// @param joint  all three must outlive this
-  SampleReading(const Sample& sample, const std::string& joint, SampleLoads& loads)
+  /// @param at_rest  what is unknown of velocity and direction is zero, not an error
+  SampleReading(const Sample& sample, const std::string& joint, SampleLoads& loads, bool at_rest)
       : sample_(sample),
         joint_(joint),
         driver_(drive(loads.robot(), loads.robot().joint(joint)).joint),
-        loads_(loads) {}
+        loads_(loads),
+        at_rest_(at_rest) {}
 
   [[nodiscard]] double position() const override { return position_in(sample_, driver_); }
   [[nodiscard]] double position_of(const std::string& joint) const override {
@@ -91,6 +93,7 @@ class SampleReading final : public JointReading {
   }
   [[nodiscard]] double velocity() const override {
     if (const auto velocity = sample_.velocity(driver_)) return *velocity;
+    if (at_rest_) return 0.0;
     throw SampleError("the velocity of joint '" + joint_ +
                       "' is not in the sample; a lag needs it: record it, or write it as "
                       "'velocity' beside 'position'");
@@ -101,6 +104,7 @@ class SampleReading final : public JointReading {
     if (std::abs(velocity) > kMoves) return velocity > 0.0 ? 1.0 : -1.0;
     if (const auto move = sample_.move(driver_))
       return *move > 0.0 ? 1.0 : *move < 0.0 ? -1.0 : 0.0;
+    if (at_rest_) return 0.0;
     throw SampleError("the direction in which joint '" + joint_ +
                       "' moved last is unknown; backlash needs samples in the order of their "
                       "recording, or velocities");
@@ -115,6 +119,7 @@ class SampleReading final : public JointReading {
   const std::string& joint_;
   std::string driver_;  ///< the joint that drives it: itself unless it mimics
   SampleLoads& loads_;
+  bool at_rest_;
 };
 
 }  // namespace kinecal::detail

@@ -27,9 +27,14 @@ class SampledChain {
   /// True if a sample has the positions of all of its joints.
   [[nodiscard]] bool has_joints(const Sample& sample) const;
 
+  /// What is taken of velocities and directions that a sample does not have: an error, or those of a
+  /// joint that rests in the middle of its play.
+  enum class Unknown { refused, at_rest };
+
   /// The motions of its joints in a sample.
   /// @throws SampleError  if the sample lacks a number, or one is not finite
-  [[nodiscard]] ModelledMotions motions(const Sample& sample) const;
+  [[nodiscard]] ModelledMotions motions(const Sample& sample,
+                                        Unknown unknown = Unknown::at_rest) const;
   /// The pose of the tip in the base.
   /// @param corrections  of the joints, from parameters()
   /// @throws  as motions()

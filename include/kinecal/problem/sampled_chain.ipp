@@ -50,7 +50,7 @@ KINECAL_INLINE bool SampledChain::has_joints(const Sample& sample) const {
   });
 }
 
-KINECAL_INLINE ModelledMotions SampledChain::motions(const Sample& sample) const {
+KINECAL_INLINE ModelledMotions SampledChain::motions(const Sample& sample, Unknown unknown) const {
   ModelledMotions all;
   all.measured = measured_joint_states(
       chain_, [&](const std::string& joint) { return detail::position_in(sample, joint); });
@@ -60,7 +60,7 @@ KINECAL_INLINE ModelledMotions SampledChain::motions(const Sample& sample) const
   for (std::size_t i = 0; i < effects_.size(); ++i) {
     for (const Effect& effect : effects_[i]) {
       const JointModelParameter& of = effect.parameter;
-      const detail::SampleReading reading(sample, of.joint, loads);
+      const detail::SampleReading reading(sample, of.joint, loads, unknown == Unknown::at_rest);
       const double unit =
           of.model == nullptr ? reading.velocity() : of.model->effect(of.part, reading, of.partner);
       if (!std::isfinite(unit)) {

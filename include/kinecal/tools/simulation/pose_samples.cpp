@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "kinecal/config/registry.hpp"
+#include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/sensors/lens.hpp"
 #include "kinecal/study/true_robot.hpp"
 #include "kinecal/tools/simulation/studied_models.ipp"
@@ -55,6 +56,7 @@ class PoseSampling {
     for (const auto& [joint, position] : positions) {
       sample.joint_names.push_back(joint);
       sample.joint_positions.push_back(position);
+      sample.joint_velocities.push_back(0.0);
     }
     sample.source = pose.source;
     Observation seen{models_.camera->name, {}, plan_.setup.camera.info},
@@ -156,6 +158,7 @@ PoseSamples pose_samples(const SimulationPlan& plan, const Config& config,
     result.samples.push_back(std::move(*sample));
     result.poses.push_back(i);
   }
+  set_joint_moves(result.samples);
   return result;
 }
 
