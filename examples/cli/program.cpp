@@ -211,7 +211,7 @@ void add_identify(CLI::App& command, IdentifyOptions& options) {
       ->delimiter(',')
       ->type_name("NAME");
   command.add_flag("--geometry-only", options.geometry_only,
-                   "without gear ratios and eccentric encoders, which a URDF cannot hold");
+                   "without joint models and lags, which a URDF cannot hold");
   command.add_option("-o,--output", options.output, "the configuration to write")
       ->type_name("FILE")
       ->capture_default_str();

@@ -41,6 +41,14 @@ TEST(JointVelocities, AreTheSlopeBetweenNeighbours) {
   EXPECT_THAT(samples[3].joint_velocities, IsEmpty()) << "nothing is near it";
 }
 
+TEST(JointVelocities, AreNotOfSamplesWithMissingPositions) {
+  std::vector<Sample> samples = {at(0.0, 0.0, 10.0), at(0.01, 0.0, 10.1)};
+  samples[1].joint_positions.pop_back();  // the reader has reported it
+  set_joint_velocities(samples);
+  set_joint_moves(samples);
+  EXPECT_THAT(samples[0].joint_velocities, IsEmpty());
+}
+
 TEST(JointVelocities, OfARecordingThatHasThemAreKept) {
   std::vector<Sample> samples = {at(0.0, 0.0, 10.0), at(0.01, 0.0, 10.1)};
   samples[1].joint_velocities = {3.0, 4.0};

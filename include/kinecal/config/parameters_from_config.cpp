@@ -135,8 +135,7 @@ inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
                                                                const StepConfig& step) {
   std::vector<std::string> names;
   for (const Joint& joint : robot.joints()) {
-    if (!moves(joint.type) || joint.mimic) continue;
-    names.push_back(joint.name);
+    if (moves(joint.type) && !joint.mimic) names.push_back(joint.name);
     for (std::string& name : joint_model_names(robot, joint)) names.push_back(std::move(name));
   }
   for (const ModelConfig& model : step.models) {

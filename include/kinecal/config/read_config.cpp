@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/config/read_config.hpp"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 #include <vector>
@@ -41,6 +42,15 @@ Config parse_config(const std::string& text, const std::string& path, Diagnostic
     detail::read_dialect(content, file, progress);
   } else {
     found.error({path, 0}, detail::describe_wrong_file(content, "a configuration"));
+  }
+  const std::vector<StepConfig>& steps = progress.config.steps;
+  const auto is_empty = [](const StepConfig& step) { return free_parameters(step).empty(); };
+  const bool all_empty = std::all_of(steps.begin(), steps.end(), is_empty);
+  for (const StepConfig& step : steps) {  // a search is for all or for none
+    if (all_empty || !is_empty(step) || nothing_free != NothingFree::without_lists) continue;
+    found.error(step.place, "nothing is free in step '" + step.name +
+                                "'; name parameters under 'free_params' or frames under "
+                                "'free_frames'");
   }
   detail::add_once(diagnostics.errors, found.errors);
   detail::add_once(diagnostics.warnings, found.warnings);

@@ -121,6 +121,16 @@ struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_offset> {
         },
         JointModels{});
   }
+  /// True for a joint that moves by itself, or a link, of the robot.
+  [[nodiscard]] static constexpr bool is_partner(std::string_view name, ModelPartner kind) {
+    for (const JointData& joint : R::kJoints) {
+      if (kind == ModelPartner::link && (joint.parent == name || joint.child == name)) return true;
+      if (kind == ModelPartner::joint && joint.name == name && name != P::kOwner) {
+        return moves(joint.type) && !joint.mimic.has_value();
+      }
+    }
+    return false;
+  }
   /// True for a parameter of a model that suits the joint.
   template <class M>
   [[nodiscard]] static constexpr bool is_of_model(const ParameterId& id, bool is_mimic) {
@@ -128,7 +138,11 @@ struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_offset> {
     for (const ParameterInfo& info : M::kParameters) {
       if (!id.part.starts_with(info.name)) continue;
       const std::string_view rest = id.part.substr(info.name.size());
-      if (rest.empty() == (partner_of<M>() == ModelPartner::none)) return true;
+      if (partner_of<M>() == ModelPartner::none) {
+        if (rest.empty()) return true;
+      } else if (rest.starts_with('_') && is_partner(rest.substr(1), partner_of<M>())) {
+        return true;
+      }
     }
     return false;
   }

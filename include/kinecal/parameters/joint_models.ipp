@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <mutex>
 #include <stdexcept>
 #include <typeinfo>
 #include <utility>
@@ -30,8 +31,10 @@ namespace detail {
     return "slides; only a joint that rotates has this parameter";
   }
   if (of.model->needs_masses() && robot.weight().links.empty()) {
-    return "moves links without mass: the URDF has no <inertial>; '" + of.joint +
-           "_link_sag_' and a link is the sag by that link, of unknown mass";
+    return "moves links without mass: the URDF has no <inertial>, or it is a crate's robot, which "
+           "has "
+           "none; '" +
+           of.joint + "_link_sag_' and a link is the sag by that link, of unknown mass";
   }
   if (of.model->partner() == ModelPartner::joint) {
     const Joint& other = robot.joint(of.partner);
@@ -75,6 +78,8 @@ KINECAL_INLINE std::vector<std::shared_ptr<const AnyJointModel>>& joint_models()
 }
 
 KINECAL_INLINE void detail::add_joint_model(std::shared_ptr<const AnyJointModel> model) {
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
   const AnyJointModel& added = *model;
   for (const auto& known : joint_models()) {
     const AnyJointModel& other = *known;

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "kinecal/kinematics/gravity_load.hpp"
 #include "kinecal/parameters/joint_model.hpp"
@@ -37,11 +38,18 @@ class SampleLoads {
 
   [[nodiscard]] const Robot& robot() const { return robot_; }
   /// Of all links and the payload.
-  [[nodiscard]] double of_links(const std::string& joint) {
+  /// @param at_rest  without the payload, if the sample does not have it; else that is an error
+  [[nodiscard]] double of_links(const std::string& joint, bool at_rest) {
     if (!of_links_) {
       of_links_ = loads().of_links();
       const std::string& link = robot_.weight().payload;
       const auto payload = sample_.conditions.find("payload");
+      if (!link.empty() && payload == sample_.conditions.end() && !at_rest) {
+        std::vector<std::string> names;
+        for (const auto& [name, value] : sample_.conditions) names.push_back(name);
+        throw SampleError("condition 'payload' is not in the sample, which payload_link '" + link +
+                          "' carries: 0 if it carries none" + did_you_mean("payload", names));
+      }
       if (!link.empty() && payload != sample_.conditions.end()) {
         loads().add(link, Vector3<double>::Zero(), payload->second, *of_links_);
       }
@@ -109,7 +117,7 @@ class SampleReading final : public JointReading {
                       "' moved last is unknown; backlash needs samples in the order of their "
                       "recording, or velocities");
   }
-  [[nodiscard]] double load() const override { return loads_.of_links(joint_); }
+  [[nodiscard]] double load() const override { return loads_.of_links(joint_, at_rest_); }
   [[nodiscard]] double load_of(const std::string& link) const override {
     return loads_.of_kilogram(joint_, link);
   }

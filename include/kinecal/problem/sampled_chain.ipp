@@ -45,9 +45,17 @@ KINECAL_INLINE SampledChain::SampledChain(const Robot& robot, RuntimeChain chain
 }
 
 KINECAL_INLINE bool SampledChain::has_joints(const Sample& sample) const {
-  return std::all_of(chain_.joints.begin(), chain_.joints.end(), [&](const ChainJoint& joint) {
-    return !moves(joint.type) || sample.position(joint.drive.joint);
-  });
+  return std::all_of(chain_.joints.begin(), chain_.joints.end(),
+                     [&](const ChainJoint& joint) {
+                       return !moves(joint.type) || sample.position(joint.drive.joint);
+                     }) &&
+         std::all_of(effects_.begin(), effects_.end(), [&](const std::vector<Effect>& of_joint) {
+           return std::all_of(of_joint.begin(), of_joint.end(), [&](const Effect& effect) {
+             const JointModelParameter& of = effect.parameter;
+             return of.model == nullptr || of.model->partner() != ModelPartner::joint ||
+                    sample.position(of.partner);
+           });
+         });
 }
 
 KINECAL_INLINE ModelledMotions SampledChain::motions(const Sample& sample, Unknown unknown) const {

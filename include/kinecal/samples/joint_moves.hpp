@@ -46,7 +46,9 @@ inline void set_joint_velocities(std::span<Sample> samples) {
   }
   const auto near = [&](const Sample& before, const Sample& after) {
     const auto gap = *after.stamp - *before.stamp;
-    return gap.count() > 0 && gap <= kNear && after.joint_names == before.joint_names;
+    const std::size_t joints = before.joint_names.size();
+    return gap.count() > 0 && gap <= kNear && after.joint_names == before.joint_names &&
+           before.joint_positions.size() == joints && after.joint_positions.size() == joints;
   };
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const bool has_before = i > 0 && near(samples[i - 1], samples[i]);

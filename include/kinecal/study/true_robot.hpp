@@ -41,8 +41,7 @@ class TrueRobot {
   /// @param beyond  a virtual frame beyond the link: returns its pose instead
   /// @returns       base_T_tip, metres
   /// @throws RobotError  if there is no chain between the links
-  /// @throws SampleError  if the position of a joint of the chain is missing, or what a joint model
-  ///                      needs beside positions
+  /// @throws SampleError  if the position of a joint of the chain is missing
   [[nodiscard]] Pose<double> pose(const std::string& base, const std::string& tip,
                                   const Positions& positions,
                                   const std::string& beyond = "") const {

@@ -36,7 +36,7 @@ inline void take_whole_frames(Identification& search, Identified& found) {
   constexpr std::size_t kFrame = 6;  // parameters
   constexpr double kAsWell = 1.01;
   const auto all = static_cast<int>(search.candidates().size());
-  for (int frame = 0; frame < all; ++frame) {
+  for (int frame = 0; frame < all && found.chosen.size() > 1; ++frame) {
     const bool is_chosen =
         std::find(found.chosen.begin(), found.chosen.end(), frame) != found.chosen.end();
     if (is_chosen || search.candidates()[static_cast<std::size_t>(frame)].columns.size() < kFrame)
@@ -63,7 +63,7 @@ inline void take_whole_frames(Identification& search, Identified& found) {
         continue;
       }
     }
-    search.begin_again();
+    search.begin_at(found.result.table);
     found.result = search.solve(found.chosen);
   }
 }

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "kinecal/config/assemble.hpp"
+#include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/trust/compared_frames.hpp"
 
@@ -66,8 +67,19 @@ OnlineState SessionFollower::start_again(std::span<const Sample> ahead) {
   return state;
 }
 
-FollowedState SessionFollower::add(const Sample& sample, std::span<const Sample> ahead) {
+/// The sample of a robot that stands still, after those before it.
+Sample SessionFollower::at_rest(Sample sample) const {
+  std::vector<Sample> all = samples_;
+  all.push_back(sample);
+  set_joint_moves(all);
+  sample.joint_moves = all.back().joint_moves;
+  sample.joint_velocities.assign(sample.joint_names.size(), 0.0);
+  return sample;
+}
+
+FollowedState SessionFollower::add(const Sample& captured, std::span<const Sample> ahead) {
   FollowedState followed;
+  const Sample sample = at_rest(captured);
   try {
     check(sample);
     if (online_) {
@@ -108,6 +120,10 @@ Sample at_pose(const CapturePose& pose, const Sample& sample) {
     there.joint_positions[i] =
         pose.positions[static_cast<std::size_t>(at - pose.joint_names.begin())];
   }
+  std::vector<Sample> way = {sample, there};
+  set_joint_moves(way);
+  there = std::move(way.back());
+  there.joint_velocities.assign(there.joint_names.size(), 0.0);
   return there;
 }
 

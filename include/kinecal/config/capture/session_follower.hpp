@@ -53,7 +53,7 @@ class SessionFollower {
 
   /// Adds the next sample of the session.
   /// @param ahead  remaining poses, where the pose is wanted as well
-  FollowedState add(const Sample& sample, std::span<const Sample> ahead = {});
+  FollowedState add(const Sample& captured, std::span<const Sample> ahead = {});
 
   /// Calibrates and judges all samples so far.
   /// @throws InputError, std::invalid_argument  if they do not suffice
@@ -63,6 +63,7 @@ class SessionFollower {
   [[nodiscard]] std::pair<std::string, std::string> frames() const;
 
  private:
+  [[nodiscard]] Sample at_rest(Sample sample) const;
   void check(const Sample& sample) const;
   [[nodiscard]] bool start();
   [[nodiscard]] OnlineState start_again(std::span<const Sample> ahead);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/problem/sample_reading.ipp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/tools/identify/candidates.ipp"
 
@@ -21,18 +22,25 @@ struct ModelCandidate {
   std::vector<std::string> parameters;
 };
 
-/// True if a joint came to enough samples from either side.
-[[nodiscard]] inline bool came_from_both_sides(const std::string& joint,
-                                               std::span<const Sample> samples) {
+/// True if all samples say what a model needs, and its parameters have different effects in them: backlash needs a
+/// joint that came from both sides, five times at least.
+[[nodiscard]] inline bool has_effect(const AnyJointModel& model, const Robot& robot,
+                                     const Joint& joint, std::span<const Sample> samples) {
   constexpr int kFewest = 5;
-  int up = 0, down = 0;
-  for (const Sample& sample : samples) {
-    const std::optional<double> move = sample.move(joint);
-    if (!move) return false;  // then the model cannot be used
-    up += *move > 0.0 ? 1 : 0;
-    down += *move < 0.0 ? 1 : 0;
+  int other = 0;
+  std::optional<double> first;
+  try {
+    for (const Sample& sample : samples) {
+      SampleLoads loads(robot, sample);
+      const SampleReading reading(sample, joint.name, loads, false);
+      const double effect = model.effect(0, reading, {});
+      if (effect != 0.0 && !first) first = effect;
+      if (first && effect != 0.0 && effect != *first) ++other;
+    }
+  } catch (const SampleError&) {  // samples without joints are reported elsewhere
+    return false;
   }
-  return std::min(up, down) >= kFewest;
+  return other >= kFewest;
 }
 
 /// True if all samples have the velocities of joints, and some moved.
@@ -121,9 +129,7 @@ struct ModelCandidate {
         names.push_back(parameter_name(joint.name, info.name));
       }
       if (model->partner() == ModelPartner::none) {
-        const bool needs_moves = names.front() == parameter_name(joint.name, "backlash");
-        if (!needs_moves || came_from_both_sides(joint.name, samples))
-          all.push_back({own, std::move(names)});
+        if (has_effect(*model, robot, joint, samples)) all.push_back({own, std::move(names)});
       } else if (model->partner() == ModelPartner::link) {
         if (!robot.weight().links.empty()) continue;
         for (const std::string& link : links_beyond(robot, joint.name, chains)) {

@@ -81,6 +81,11 @@ Explanations free_explanations(const Config& config, const Robot& robot,
   Identified as_found;
   as_found.chosen.assign(chosen.begin(), chosen.end());
   both.config = identified_config(config, task, as_found, problem);
+  StepConfig& step = both.config.steps.front();
+  for (const FreeParamConfig& given :
+       config.steps.front().free_params) {  // beside whole candidates
+    if (!detail::is_free(step, given.name)) step.free_params.push_back(given);
+  }
   return both;
 }
 
