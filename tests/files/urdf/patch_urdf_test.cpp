@@ -272,12 +272,36 @@ TEST(PatchUrdf, WritesTheShortestNumberThatReadsBackTheSame) {
               HasSubstr("<origin xyz='0.1 0 -0.25'/>"));
 }
 
-TEST(PatchUrdf, ASlidingJointsOffsetShiftsItsOriginOnly) {
-  const std::string limit = "<limit lower='0' upper='1' effort='1' velocity='1'/>";
-  const std::string rest = kAB + "<axis xyz='0 0 1'/>" + limit;
-  EXPECT_EQ(patched(one_joint("<origin xyz='0 0 1' rpy='0 0 1.570'/>" + rest, "prismatic"),
+TEST(PatchUrdf, ASlidingJointsOffsetShiftsItsOriginAndLimits) {
+  const std::string rest = kAB + "<axis xyz='0 0 1'/><limit lower='";
+  const std::string before = rest + "0' upper='1.0' effort='1' velocity='1'/>";
+  const std::string after = rest + "-0.25' upper='0.75' effort='1' velocity='1'/>";
+  EXPECT_EQ(patched(one_joint("<origin xyz='0 0 1' rpy='0 0 1.570'/>" + before, "prismatic"),
                     {{"j", 0.25, {}}}, OffsetStyle::origin),
-            one_joint("<origin xyz='0 0 1.25' rpy='0 0 1.570'/>" + rest, "prismatic"));
+            one_joint("<origin xyz='0 0 1.25' rpy='0 0 1.570'/>" + after, "prismatic"));
+}
+
+TEST(PatchUrdf, OffsetsInOriginsAllowTheSamePosesAsOnesInRising) {
+  const std::vector<JointPatch> offset = {{"lift", 0.125, {}}};
+  const Robot before = parse_urdf(kDifficult, "arm.urdf");
+  const Robot rising = parse_urdf(patched(kDifficult, offset), "arm.urdf");
+  const Robot origin = parse_urdf(patched(kDifficult, offset, OffsetStyle::origin), "arm.urdf");
+  EXPECT_EQ(rising.joint("lift").limits->upper, before.joint("lift").limits->upper);
+  // positions are readings now, which are lower by the offset; "slide" follows by half of it
+  EXPECT_EQ(origin.joint("lift").limits->lower, before.joint("lift").limits->lower - 0.125);
+  EXPECT_EQ(origin.joint("lift").limits->upper, before.joint("lift").limits->upper - 0.125);
+  EXPECT_EQ(origin.joint("slide").limits->upper, before.joint("slide").limits->upper - 0.0625);
+}
+
+TEST(PatchUrdf, SoftLimitsMoveWithTheLimits) {
+  const std::string text = one_joint(
+      kAB +
+          "<limit lower='-1' upper='1' effort='1' velocity='1'/>"
+          "<safety_controller soft_lower_limit='-0.5' soft_upper_limit='0.5' k_velocity='1'/>",
+      "revolute");
+  EXPECT_THAT(patched(text, {{"j", 0.25, {}}}, OffsetStyle::origin),
+              AllOf(HasSubstr("lower='-1.25' upper='0.75' effort"),
+                    HasSubstr("soft_lower_limit='-0.75' soft_upper_limit='0.25' k_velocity")));
 }
 
 TEST(PatchUrdf, ATurningJointsOffsetTurnsItsOriginOnly) {
@@ -285,6 +309,107 @@ TEST(PatchUrdf, ATurningJointsOffsetTurnsItsOriginOnly) {
   EXPECT_EQ(patched(one_joint("<origin xyz='0 0 1.0' rpy='0 0 0'/>" + rest), {{"j", 0.25, {}}},
                     OffsetStyle::origin),
             one_joint("<origin xyz='0 0 1.0' rpy='0 0 0.25'/>" + rest));
+}
+
+/// One joint that ros2_control drives.
+std::string driven_joint(const std::string& content, const std::string& calibration = "") {
+  std::string text = one_joint(kAB + calibration);
+  const std::string control = "  <ros2_control name='arm'>" + content + "</ros2_control>\n";
+  return text.insert(text.rfind("</robot>"), control);
+}
+
+TEST(PatchUrdfRos2Control, AddsToTheOffsetOfAJoint) {
+  const std::string before = "<joint name='j'>\n<param name='id'>3</param><param name='offset'> ";
+  const std::string after = " </param><param name='gear'>2</param></joint>";
+  EXPECT_EQ(
+      patched(driven_joint(before + "0.50" + after), {{"j", 0.25, {}}}, OffsetStyle::ros2_control),
+      driven_joint(before + "0.75" + after));
+}
+
+TEST(PatchUrdfRos2Control, AddsToTheOffsetsOfPositionInterfacesOnly) {
+  const auto content = [](const std::string& offset) {
+    const std::string param = "<param name='offset'>" + offset + "</param>";
+    return "<joint name='j'><command_interface name='position'>" + param +
+           "</command_interface><state_interface name='position'>" + param +
+           "</state_interface><state_interface name='velocity'><param name='offset'>0</param>"
+           "</state_interface></joint>";
+  };
+  EXPECT_EQ(patched(driven_joint(content("0")), {{"j", 0.25, {}}}, OffsetStyle::ros2_control),
+            driven_joint(content("0.25")));
+}
+
+TEST(PatchUrdfRos2Control, CreatesAMissingOffsetFirstInTheJoint) {
+  const std::vector<JointPatch> offset = {{"j", 0.25, {}}};
+  const auto patch = [&](const std::string& content) {
+    return patched(driven_joint(content), offset, OffsetStyle::ros2_control);
+  };
+  EXPECT_EQ(patch("\n    <joint name=\"j\">\n      <param name=\"id\">1</param>\n    </joint>\n  "),
+            driven_joint("\n    <joint name=\"j\">\n      <param name=\"offset\">0.25</param>\n"
+                         "      <param name=\"id\">1</param>\n    </joint>\n  "));
+  EXPECT_EQ(patch("<joint name='j' />"),
+            driven_joint("<joint name='j'><param name='offset'>0.25</param></joint>"));
+}
+
+TEST(PatchUrdfRos2Control, IsChosenForJointsThatHaveAnOffsetThere) {
+  const std::vector<JointPatch> offset = {{"j", 0.25, {}}};
+  const std::string with = driven_joint("<joint name='j'><param name='offset'>0</param></joint>");
+  const std::string without = driven_joint("<joint name='j'/>");
+  EXPECT_EQ(patched(with, offset, OffsetStyle::as_read),
+            patched(with, offset, OffsetStyle::ros2_control));
+  EXPECT_EQ(patched(without, offset, OffsetStyle::as_read),
+            patched(without, offset, OffsetStyle::rising));
+  const auto into_rising = [&](const std::string& text) {
+    return goes_into_rising(text, "arm.urdf", parse_urdf(text, "arm.urdf"), offset);
+  };
+  EXPECT_FALSE(into_rising(with));
+  EXPECT_TRUE(into_rising(without));
+  EXPECT_FALSE(into_rising(driven_joint("", "<calibration rising='0'/>"))) << "it is read already";
+}
+
+TEST(PatchUrdfRos2Control, AnOffsetInTicksIsLeftToItsDriver) {
+  const std::string text =
+      driven_joint("<joint name='j'><param name='offset'>2048</param></joint>");
+  const std::vector<JointPatch> offset = {{"j", 0.25, {}}};
+  EXPECT_EQ(patched(text, offset, OffsetStyle::as_read), patched(text, offset));
+  try {
+    (void)patched(text, offset, OffsetStyle::ros2_control);
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    EXPECT_STREQ(e.what(),
+                 "arm.urdf:3: joint 'j': offset '2048' of <ros2_control> is not in "
+                 "radians; use --offsets origin");
+  }
+}
+
+TEST(PatchUrdfRos2Control, AJointThatItDoesNotHaveIsAnError) {
+  try {
+    (void)patched(driven_joint("<joint name='jj'/>"), {{"j", 0.25, {}}}, OffsetStyle::ros2_control);
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), AllOf(StartsWith("arm.urdf: <ros2_control> has no joint 'j'"),
+                                HasSubstr("--offsets origin")));
+  }
+}
+
+TEST(PatchUrdfRos2Control, OffsetsAreReadBack) {
+  const std::string text = driven_joint(
+      "<joint name='j'><param name='offset'>0.5</param></joint>"
+      "<joint name='k'><param name='offset'>0</param></joint>");
+  EXPECT_THAT(ros2_control_offsets(text, "arm.urdf"), ElementsAre(testing::Pair("j", 0.5)));
+}
+
+TEST(CalibratedOrigins, AreThoseOfTheFileWithOffsetsInOrigins) {
+  const Robot robot = parse_urdf(kDifficult, "arm.urdf");
+  const auto origins = calibrated_origins(robot, all_patches());
+  const Robot written =
+      parse_urdf(patched(kDifficult, all_patches(), OffsetStyle::origin), "arm.urdf");
+  ASSERT_EQ(origins.size(), robot.joints().size());
+  std::vector<Pose<double>> expected, found;
+  for (const Joint& joint : written.joints()) {
+    expected.push_back(joint.origin);
+    found.push_back(origins.at(joint.name));
+  }
+  expect_equal(found, expected);
 }
 
 TEST(PatchUrdf, CreatesMissingAttributesBehindTheOthers) {

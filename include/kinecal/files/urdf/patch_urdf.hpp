@@ -5,14 +5,18 @@
 //   frame correction             origin <- origin * correction
 //   offset, OffsetStyle::rising  <calibration rising="..."> <- rising + offset; `falling` likewise
 //                                if present
-//   offset, OffsetStyle::origin  origin <- origin * correction * motion(axis, offset)
+//   offset, OffsetStyle::origin  origin <- origin * correction * motion(axis, offset);
+//                                limits <- limits - offset
+//   offset, OffsetStyle::ros2_control  <param name="offset"> of the joint in <ros2_control> <- its value + offset
 //
-// The last one is valid because motions along one axis add up: motion(offset) * motion(q) =
+// The origin can hold the offset because motions along one axis add up: motion(offset) * motion(q) =
 // motion(q + offset).  A mimic joint moves with the joint it follows; folded into origins, the
-// offset reaches it as motion(axis, multiplier * offset).
+// offset reaches it as motion(axis, multiplier * offset).  Positions are then raw readings, so the limits
+// move by -offset: the same poses are allowed as with `rising`.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,9 +33,13 @@ struct JointPatch {
   Pose<double> correction = {};  ///< of the joint's frame, after its origin; metres
 };
 
-/// Where to write joint offsets: into <calibration rising>, or into the joint's origin, which every
-/// program reads.
-enum class OffsetStyle { rising, origin };
+/// Where to write joint offsets.
+enum class OffsetStyle {
+  rising,        ///< <calibration rising>, which few drivers read
+  origin,        ///< the joint's <origin>, which every program reads
+  ros2_control,  ///< <param name="offset"> of the joint in <ros2_control>: position = reading + offset
+  as_read  ///< ros2_control for joints that have that offset, in radians or metres; else rising
+};
 
 /// The text of a URDF with the calibration written into it.
 /// @param text               the URDF, UTF-8
@@ -39,10 +47,28 @@ enum class OffsetStyle { rising, origin };
 /// @param robot              what parse_urdf() read from the text
 /// @param patches            at most one for each joint; no offsets for joints that mimic another
 /// @throws InputError  if a joint is not in the text, has two patches, or has an offset but no
-///                     position of its own; if a number that changes cannot be read
+///                     position of its own; if a number that changes cannot be read; if
+///                     <ros2_control> should hold an offset and does not have the joint
 /// Source: robot_calibration, `calibrated_<date>.urdf`.
 [[nodiscard]] std::string patch_urdf(const std::string& text, const std::string& name_for_messages,
                                      const Robot& robot, const std::vector<JointPatch>& patches,
                                      OffsetStyle style);
+
+/// True if OffsetStyle::as_read writes the first <calibration rising> of a URDF: its programs may not read it.
+/// @param text  the URDF, like the other arguments as patch_urdf() takes them
+[[nodiscard]] bool goes_into_rising(const std::string& text, const std::string& name_for_messages,
+                                    const Robot& robot, const std::vector<JointPatch>& patches);
+
+/// The nonzero offsets of joints in <ros2_control>, radians or metres as the driver has them.
+/// @param text               the URDF, UTF-8
+/// @param name_for_messages  name of the text in messages: its file
+/// @throws InputError  if the text is not XML
+[[nodiscard]] std::map<std::string, double> ros2_control_offsets(
+    const std::string& text, const std::string& name_for_messages);
+
+/// The origins of all joints as OffsetStyle::origin writes them, by joint; metres.
+/// @param patches  as patch_urdf() takes them, of joints of the robot
+[[nodiscard]] std::map<std::string, Pose<double>> calibrated_origins(
+    const Robot& robot, const std::vector<JointPatch>& patches);
 
 }  // namespace kinecal
