@@ -51,6 +51,7 @@
 #include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/patch_urdf.hpp"
+#include "kinecal/files/urdf/patch_xacro.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/files/urdf/robot_header.hpp"
 #include "kinecal/files/urdf/velocity_limits.hpp"

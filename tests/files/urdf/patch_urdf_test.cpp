@@ -504,6 +504,7 @@ TEST(PatchUrdf, OnFetchOnlyTheLinesOfThePatchedJointsChange) {
   EXPECT_THAT(differences(text, in_origin),
               ElementsAre(AllOf(StartsWith(torso + "0 0.37743\" />"), HasSubstr(" -> " + torso)),
                           AllOf(HasSubstr("<origin rpy="), HasSubstr(" xyz=\"0.119525 ")),
+                          HasSubstr("lower=\"-1.7306\" upper=\"1.4806\""),
                           StartsWith("    <origin rpy=\"")));
   std::string without_calibration = rising;
   const std::string created = "\n    <calibration rising=\"0.125\" />";

@@ -1,0 +1,155 @@
+#include "kinecal/files/urdf/patch_xacro.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "kinecal/files/urdf/patch_urdf.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+/// What xacro makes of kXacro with prefix:=left_.
+constexpr const char* kUrdf = R"(<robot name="arm">
+  <link name="l0"/><link name="l1"/><link name="l2"/><link name="l3"/><link name="l4"/>
+  <joint name="left_pan" type="revolute">
+    <origin xyz="0 0 0.1" rpy="0 0 0"/><parent link="l0"/><child link="l1"/><axis xyz="0 0 1"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/>
+  </joint>
+  <joint name="left_lift" type="continuous">
+    <origin xyz="0 0 0.25" rpy="0 0 0"/><parent link="l1"/><child link="l2"/><axis xyz="0 1 0"/>
+  </joint>
+  <joint name="finger_1" type="fixed">
+    <origin xyz="0 0.5 0" rpy="0 0 0"/><parent link="l2"/><child link="l3"/>
+  </joint>
+  <joint name="finger_2" type="fixed">
+    <origin xyz="0 0.5 0" rpy="0 0 0"/><parent link="l2"/><child link="l4"/>
+  </joint>
+</robot>
+)";
+
+constexpr const char* kXacro = R"(<?xml version="1.0"?>
+<!-- pan: xyz="0 0 0.1" -->
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="prefix" default=""/>
+  <xacro:property name="height" value="0.25"/>
+  <xacro:if value="true">
+    <joint name="$(arg prefix)pan" type="revolute">
+      <origin xyz="0 0   0.10" rpy="0 0 0" />  <!-- literal -->
+      <parent link="l0"/><child link="l1"/><axis xyz="0 0 1"/>
+      <limit lower="${-2}" upper="2.0" effort="1" velocity="1"/>
+    </joint>
+  </xacro:if>
+  <joint name="${prefix}lift" type="continuous">
+    <origin xyz="0 0 ${height}" rpy="0 0 0"/>
+    <parent link="l1"/><child link="l2"/><axis xyz="0 1 0"/>
+  </joint>
+  <xacro:macro name="finger" params="i">
+    <joint name="finger_${i}" type="fixed"><origin xyz="0 0.5 0" rpy="0 0 0"/>
+      <parent link="l2"/><child link="l${i + 2}"/></joint>
+  </xacro:macro>
+  <xacro:finger i="1"/><xacro:finger i="2"/>
+  <ros2_control name="c" type="system"><joint name="$(arg prefix)pan"/></ros2_control>
+</robot>
+)";
+
+std::string calibrated(const std::vector<JointPatch>& patches,
+                       OffsetStyle style = OffsetStyle::origin) {
+  return patch_urdf(kUrdf, "arm.urdf", parse_urdf(kUrdf, "arm.urdf"), patches, style);
+}
+
+XacroPatch patched(const std::vector<JointPatch>& patches,
+                   OffsetStyle style = OffsetStyle::origin) {
+  return patch_xacro(kXacro, "arm.xacro", kUrdf, calibrated(patches, style));
+}
+
+JointPatch shifted(const std::string& joint, double z) {
+  JointPatch patch{joint, 0.0, {}};
+  patch.correction.translation.z() = z;
+  return patch;
+}
+
+std::string with(std::string text, const std::string& old, const std::string& replaced) {
+  return text.replace(text.find(old), old.size(), replaced);
+}
+
+TEST(PatchXacro, LiteralsAreReplacedAndAllElseStays) {
+  const XacroPatch patch = patched({shifted("left_pan", 0.5)});
+  EXPECT_EQ(patch.text, with(kXacro, "0 0   0.10", "0 0   0.6"));
+  EXPECT_THAT(patch.patched, ElementsAre("left_pan"));
+  EXPECT_THAT(patch.unpatched, IsEmpty());
+}
+
+TEST(PatchXacro, ExpressionsAreNamedWithTheirLineAndNewValue) {
+  const XacroPatch patch = patched({shifted("left_lift", 0.5)});
+  EXPECT_EQ(patch.text, kXacro);
+  EXPECT_THAT(patch.patched, IsEmpty());
+  EXPECT_THAT(
+      patch.unpatched,
+      ElementsAre("arm.xacro:14: joint 'left_lift': xyz=\"0 0 ${height}\" is an expression; "
+                  "it should become xyz=\"0 0 0.75\" of <origin>"));
+}
+
+TEST(PatchXacro, AJointWithBothGetsTheLiteralsAndTheRestIsNamed) {
+  const XacroPatch patch = patched({{"left_pan", 0.25, {}}});
+  EXPECT_EQ(patch.text, with(with(kXacro, "rpy=\"0 0 0\"", "rpy=\"0 0 0.25\""), "upper=\"2.0\"",
+                             "upper=\"1.75\""));
+  EXPECT_THAT(patch.unpatched,
+              ElementsAre(AllOf(StartsWith("arm.xacro:10: joint 'left_pan': lower=\"${-2}\""),
+                                HasSubstr("lower=\"-2.25\" of <limit>"))));
+}
+
+TEST(PatchXacro, RisingIsCreatedWhereTheUrdfHasIt) {
+  const XacroPatch patch = patched({{"left_pan", 0.25, {}}}, OffsetStyle::rising);
+  EXPECT_EQ(patch.text, with(kXacro, "<axis xyz=\"0 0 1\"/>",
+                             "<axis xyz=\"0 0 1\"/><calibration rising=\"0.25\"/>"));
+}
+
+TEST(PatchXacro, PatchingAgainChangesNothing) {
+  const std::vector<JointPatch> patches = {shifted("left_pan", 0.5)};
+  const std::string once = patched(patches).text;
+  const XacroPatch again = patch_xacro(once, "arm.xacro", kUrdf, calibrated(patches));
+  EXPECT_EQ(again.text, once);
+  EXPECT_THAT(again.patched, ElementsAre("left_pan"));
+  const std::string rising = patched({{"left_pan", 0.25, {}}}, OffsetStyle::rising).text;
+  EXPECT_EQ(patch_xacro(rising, "arm.xacro", kUrdf,
+                        calibrated({{"left_pan", 0.25, {}}}, OffsetStyle::rising))
+                .text,
+            rising);
+}
+
+TEST(PatchXacro, AMacroOfSeveralJointsIsNamed) {
+  EXPECT_THAT(patched({shifted("finger_2", 0.5)}).unpatched,
+              ElementsAre(AllOf(StartsWith("arm.xacro:18: joint 'finger_2' is one of 2"),
+                                HasSubstr("xyz=\"0 0.5 0.5\" of <origin>"))));
+}
+
+TEST(PatchXacro, AnotherNumberThanInTheUrdfIsNamed) {
+  const XacroPatch patch = patch_xacro(with(kXacro, "0 0   0.10", "0 0 0.2"), "arm.xacro", kUrdf,
+                                       calibrated({shifted("left_pan", 0.5)}));
+  EXPECT_THAT(patch.unpatched,
+              ElementsAre(HasSubstr("xyz=\"0 0 0.2\" is not the number in the URDF")));
+}
+
+TEST(PatchXacro, AJointOfAnotherFileIsNamed) {
+  const XacroPatch patch = patch_xacro("<robot xmlns:xacro='http://www.ros.org/wiki/xacro'/>",
+                                       "top.xacro", kUrdf, calibrated({shifted("left_pan", 0.5)}));
+  EXPECT_THAT(patch.unpatched, ElementsAre(StartsWith("top.xacro: no joint 'left_pan'; it may be "
+                                                      "in a file that this one includes")));
+}
+
+TEST(PatchXacro, WhatIsNotXacroIsAnError) {
+  EXPECT_THROW((void)patch_xacro("<a/>", "a.xacro", kUrdf, kUrdf), InputError);
+  EXPECT_THROW((void)patch_xacro("", "a.xacro", kUrdf, kUrdf), InputError);
+}
+
+}  // namespace
+}  // namespace kinecal
