@@ -44,6 +44,8 @@
 #include "kinecal/files/recordings/recorded_clouds.hpp"
 #include "kinecal/files/recordings/write_recording.hpp"
 #include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/results/homing_offsets.hpp"
+#include "kinecal/files/results/kinematics_yaml.hpp"
 #include "kinecal/files/results/output_file.hpp"
 #include "kinecal/files/results/result_files.hpp"
 #include "kinecal/files/results/standard_output.hpp"

@@ -1,0 +1,38 @@
+// The origins of a robot's joints as YAML: the calibration file of UR's descriptions, or one with the
+// names of the joints.
+//
+//   kinematics:
+//     shoulder:            or the name of a joint
+//       x: 0.0             origin of the joint in its parent link, metres
+//       y: 0.0
+//       z: 0.1625
+//       roll: 0.0          radians
+//       pitch: 0.0
+//       yaw: 0.0001
+//     hash: calib_12345    UR only: what the driver compares with the robot's own calibration
+//
+// Zeros of joints are turned or slid into the origins: the file has no other place for them.
+// Source: Universal_Robots_ROS2_Description, config/ur5e/default_kinematics.yaml.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/urdf/patch_urdf.hpp"
+#include "kinecal/kinematics/robot.hpp"
+
+namespace kinecal {
+
+/// The content of such a file, with UR's names if the file is UR's already or the robot has UR's six joints,
+/// which rotate about z.
+/// @param patches   as patch_urdf() takes them, of joints of the robot
+/// @param existing  content of the file that it replaces, whose hash it keeps; empty: there is none
+/// @param file      its name, for messages
+/// @throws InputError  if what exists is not such a file, or is UR's and the robot is not
+[[nodiscard]] std::string kinematics_yaml(const Robot& robot,
+                                          const std::vector<JointPatch>& patches,
+                                          const std::string& existing, const std::string& file);
+
+}  // namespace kinecal
