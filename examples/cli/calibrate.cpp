@@ -14,7 +14,6 @@
 #include "fit.hpp"
 #include "input.hpp"
 #include "kinecal/config/doubts/judge_causes.hpp"
-#include "kinecal/config/doubts/rising.hpp"
 #include "kinecal/report.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
@@ -24,6 +23,7 @@
 #include "output_file.hpp"
 #include "progress.hpp"
 #include "report.hpp"
+#include "robot_files.hpp"
 #include "scene.hpp"
 #include "search.hpp"
 #include "terminal.hpp"
@@ -107,7 +107,10 @@ void check_results(const ResultOptions& options) {
 
 ResultFileOptions file_options(const ResultOptions& options) {
   ResultFileOptions files;
-  files.offsets = options.offsets == "origin" ? OffsetStyle::origin : OffsetStyle::rising;
+  files.offsets = options.offsets == "origin"         ? OffsetStyle::origin
+                  : options.offsets == "rising"       ? OffsetStyle::rising
+                  : options.offsets == "ros2_control" ? OffsetStyle::ros2_control
+                                                      : OffsetStyle::as_read;
   if (options.upstream_names) {
     files.date = fmt::format("{:%Y_%m_%d_%H_%M_%S}", fmt::localtime(std::time(nullptr)));
   }
@@ -125,15 +128,11 @@ namespace {
 
 /// Says what does not read the zeros that were written, if the URDF had none of this kind before.
 std::string offsets_text(const ResultOptions& options, const Input& input,
-                         const ParameterTable& table) {
-  const auto has_zero = [&](const Joint& joint) {
-    const int zero = table.find(joint.name);
-    return moves(joint.type) && zero >= 0 && table[zero].value != 0.0;
-  };
-  const std::vector<Joint>& joints = input.robot.joints();
-  if (options.offsets != "rising" || std::none_of(joints.begin(), joints.end(), has_zero))
+                         const std::vector<JointPatch>& patches) {
+  if (!options.offsets.empty() ||
+      !goes_into_rising(input.urdf_text, input.urdf, input.robot, patches)) {
     return "";
-  if (!rising_of(input.urdf_text, input.urdf).empty()) return "";
+  }
   return "\nzeros of joints are in <calibration rising> of the URDF, which robot_state_publisher, "
          "MoveIt and "
          "most drivers do not read; --offsets origin puts them into the origins, which all read\n";
@@ -251,6 +250,7 @@ int calibrate(const CalibrateOptions& options) {
   Input input = read_input(options);
   print(input.diagnostics);
   if (!input.diagnostics.errors.empty()) return kBadInput;
+  if (folder) check_robot_files(options, input);
   const double reading = seconds_since(start);
 
   const std::optional<Fit> fit_of_input = fit_and_judge(options, input);
@@ -268,16 +268,19 @@ int calibrate(const CalibrateOptions& options) {
   write_reports(options, input, fitted);
   if (!options.scene.empty()) write_scene_file(options.scene, input, fitted, options.mesh_paths);
   const bool is_usable = findings.judgement.verdict != Grade::do_not_use;
+  const std::vector<JointPatch> patches = joint_patches(input.robot, findings.result.table);
   std::vector<OutputFile> files;
   if (folder && is_usable) {
     files = with_copies(options, input,
                         output_files(input.robot, {input.urdf, input.urdf_text}, fitted.calibration,
                                      findings, fitted.samples, file_options(options)));
+    const RobotFiles others = robot_files(options, input, patches, files.front().content);
     folder->write(files);
+    write(others);
   }
   const double writing = seconds_since(start) - reading - fitting;
   if (!manner.json && !manner.quiet) {
-    if (!files.empty()) show(offsets_text(options, input, findings.result.table), manner);
+    if (!files.empty()) show(offsets_text(options, input, patches), manner);
     show("\n" + times_text(input.samples.size(), findings.result, reading, fitting, writing),
          manner);
   }

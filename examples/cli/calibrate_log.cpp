@@ -26,6 +26,7 @@
 #include "kinecal/trust/judge_shards.hpp"
 #include "output.hpp"
 #include "processes.hpp"
+#include "robot_files.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {
@@ -162,6 +163,7 @@ class LogRun {
     check_results(options_);
     first_ = read(0);
     print_or_throw(first_.diagnostics);
+    check_robot_files(options_, first_);
   }
 
   /// Numbers of all files: each process computes those of every n-th one, unless they are on disk.
@@ -319,8 +321,12 @@ int report(const ResultOptions& options, LogRun& run, const Findings& findings) 
       output_files(first.robot, {first.urdf, first.urdf_text}, first.calibration, findings,
                    first.samples, file_options(options));
   std::erase_if(all, [](const OutputFile& file) { return file.name == "residuals.csv"; });
+  const std::string& calibrated = all.front().content;
+  const RobotFiles others =
+      robot_files(options, first, joint_patches(first.robot, result.table), calibrated);
   OutputFolder folder(options.output);
   write(folder, with_copies(options, first, std::move(all)));
+  write(others);
   run.forget_checkpoints();
   return kDone;
 }

@@ -33,10 +33,19 @@ struct InputOptions {
   NothingFree nothing_free = NothingFree::is_error;
 };
 
+/// Files of the robot's own programs that the calibration is written into; empty: none.
+struct RobotFileOptions {
+  std::string kinematics;          ///< origins, YAML
+  std::string homing;              ///< homing offsets of servos, JSON of LeRobot
+  std::string servos = "feetech";  ///< their make
+  std::string xacro;               ///< what the URDF was made of
+};
+
 /// What is calibrated, and where the result goes.
 struct ResultOptions : InputOptions {
-  std::string output;  ///< folder
-  std::string offsets = "rising";
+  std::string output;   ///< folder
+  std::string offsets;  ///< rising, origin or ros2_control; empty: ros2_control where it has one
+  RobotFileOptions robot_files = {};
   bool upstream_names = false;
   bool force = false;  ///< replace results
   int threads = 0;     ///< zero: one per core

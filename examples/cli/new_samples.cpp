@@ -71,8 +71,8 @@ void assemble_new(const StoredResult& result, NewSamples& fresh) {
 /// Takes the result off what was recorded with it in force: offsets in <calibration rising>, and cameras.
 /// @returns  false if it changes nothing
 bool take_off(const StoredResult& result, const AnyProblem& problem, std::vector<Sample>& samples) {
-  bool changes = !result.added_rising.empty();
-  add_rising(result.added_rising, samples, -1.0);
+  bool changes = !result.added_offsets.empty();
+  add_rising(result.added_offsets, samples, -1.0);
   for (const MountedSensor& sensor : problem.sensors()) {
     const Mount& mount = sensor.mount();
     const auto inverse = [&](const char* part) {

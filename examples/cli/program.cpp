@@ -83,9 +83,36 @@ void add_offsets(CLI::App& command, std::string& offsets) {
       .add_option(
           "--offsets", offsets,
           "where joint offsets go: rising adds them to <calibration rising>, origin puts them "
-          "into the joints' <origin>, for drivers that ignore <calibration>")
-      ->check(CLI::IsMember({"rising", "origin"}))
+          "into the joints' <origin>, which all programs read, ros2_control adds them to <param "
+          "name=\"offset\"> of the joint; default: ros2_control if it has that, else rising")
+      ->check(CLI::IsMember({"rising", "origin", "ros2_control"}));
+}
+
+/// The files of the robot's programs.
+void add_robot_files(CLI::App& command, RobotFileOptions& files) {
+  command
+      .add_option("--kinematics", files.kinematics,
+                  "also write the origins of the joints, with their zeros, as YAML: UR's "
+                  "calibration file, or one with the names of the joints")
+      ->type_name("FILE");
+  CLI::Option* homing =
+      command
+          .add_option("--homing", files.homing,
+                      "also add the zeros to the homing offsets of servos: JSON of LeRobot, which "
+                      "is patched, and kept as FILE.backup_1")
+          ->type_name("FILE");
+  command
+      .add_option("--servos", files.servos,
+                  "make of these servos, which decides the sign: homing offsets of feetech are "
+                  "subtracted from what the encoder reads, those of dynamixel are added")
+      ->check(CLI::IsMember({"feetech", "dynamixel"}))
+      ->needs(homing)
       ->capture_default_str();
+  command
+      .add_option("--xacro", files.xacro,
+                  "the xacro file that the URDF was made of: numbers that are literals there are "
+                  "patched, others are named with their lines")
+      ->type_name("FILE");
 }
 
 /// How the command speaks.
@@ -100,6 +127,7 @@ void add_manner(CLI::App& command, Manner& manner) {
 /// Options of results, but for the folder.
 void add_results(CLI::App& command, ResultOptions& options) {
   add_offsets(command, options.offsets);
+  add_robot_files(command, options.robot_files);
   command.add_flag("--upstream-names", options.upstream_names,
                    "name the files as robot_calibration does, with the date");
   command.add_flag("--force", options.force, "replace the results that are in the folder");

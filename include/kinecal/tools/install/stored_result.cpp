@@ -7,6 +7,7 @@
 #include "kinecal/config/doubts/rising.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/results/result_files.hpp"
+#include "kinecal/files/urdf/patch_urdf.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/tools/install/result_folder.hpp"
 #include "kinecal/tools/install/stored_report.ipp"
@@ -53,11 +54,15 @@ StoredResult read_result(const std::string& folder) {
   } catch (const detail::JsonError& error) {
     throw InputError(result.report + ": " + error.what() + detail::kAgain);
   }
-  result.added_rising = rising_of(files.urdf.content, files.urdf.name);
-  for (const auto& [joint, rising] : rising_of(result.urdf_text, result.urdf)) {
-    result.added_rising[joint] -= rising;
+  for (const auto read : {&rising_of, &ros2_control_offsets}) {
+    for (const auto& [joint, after] : read(files.urdf.content, files.urdf.name)) {
+      result.added_offsets[joint] += after;
+    }
+    for (const auto& [joint, before] : read(result.urdf_text, result.urdf)) {
+      result.added_offsets[joint] -= before;
+    }
   }
-  std::erase_if(result.added_rising, [](const auto& of) { return of.second == 0.0; });
+  std::erase_if(result.added_offsets, [](const auto& of) { return of.second == 0.0; });
   return result;
 }
 

@@ -54,8 +54,9 @@ struct StoredResult {
   RecordedPoses poses;                        ///< those of the samples
   std::map<std::string, double> deviations;  ///< of calibrated parameters; infinite: not determined
   std::map<std::string, std::string> units;  ///< of calibrated parameters
-  /// <calibration rising> of calibrated.urdf less that of the original one, by joint; not zero.
-  std::map<std::string, double> added_rising;
+  /// What the driver adds to readings by calibrated.urdf less by the original one, by joint; not zero:
+  /// <calibration rising>, and offsets of <ros2_control>.
+  std::map<std::string, double> added_offsets;
 
   /// Values of all parameters of a table; of those that the result does not have, zero.
   [[nodiscard]] std::vector<double> values_of(const ParameterTable& table) const;

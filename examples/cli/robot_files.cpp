@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_files.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <system_error>
+
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/results/homing_offsets.hpp"
+#include "kinecal/files/results/kinematics_yaml.hpp"
+#include "kinecal/files/text_file.hpp"
+#include "kinecal/files/urdf/patch_xacro.hpp"
+#include "kinecal/text/counted.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file itself, where its name is a link: the link stays.
+fs::path file_behind(const std::string& name) {
+  std::error_code missing;
+  const fs::path file = fs::canonical(name, missing);
+  return missing ? fs::path(name) : file;
+}
+
+/// "arm.json.backup_<n>"
+std::string backup_name(const fs::path& file, int n) {
+  return fmt::format("{}.backup_{}", file.filename().string(), n);
+}
+
+/// Number of the newest backup of a file; 0 without one.
+int newest_backup(const fs::path& file) {
+  int n = 0;
+  while (fs::exists(file.parent_path() / backup_name(file, n + 1))) ++n;
+  return n;
+}
+
+void add_kinematics(const std::string& name, const Input& input,
+                    const std::vector<JointPatch>& patches, RobotFiles& files) {
+  const fs::path file = file_behind(name);
+  const std::string existing = fs::exists(file) ? detail::read_text_file(name) : "";
+  const std::string text = kinematics_yaml(input.robot, patches, existing, name);
+  files.sets.push_back({folder_of(file.string()), {{file.filename().string(), text}}});
+  files.said.note({name, 0}, "has the origins of joints; their zeros are in them");
+}
+
+/// Homing offsets are added to: a copy of the file before says whether they hold these zeros already.
+void add_homing(const RobotFileOptions& options, const Input& input,
+                const std::vector<JointPatch>& patches, RobotFiles& files) {
+  const std::string& name = options.homing;
+  const ServoMake make = options.servos == "dynamixel" ? ServoMake::dynamixel : ServoMake::feetech;
+  const auto patched = [&](const std::string& text) {
+    return patch_homing_offsets(text, name, input.robot, patches, make);
+  };
+  const fs::path file = file_behind(name);
+  const std::string text = detail::read_text_file(name);
+  const HomingPatch patch = patched(text);
+  for (const std::string& joint : patch.missing) {
+    files.said.warning({name, 0}, fmt::format("joint '{}' has a zero but no motor", joint));
+  }
+  if (!patch.unused.empty()) {
+    files.said.note({name, 0},
+                    fmt::format("motors that are no joint: {}", fmt::join(patch.unused, ", ")));
+  }
+  if (patch.text == text) return;
+  const int n = newest_backup(file);
+  const fs::path backup = file.parent_path() / backup_name(file, n);
+  if (n > 0 && patched(detail::read_text_file(backup.string())).text == text) {
+    files.said.note({name, 0}, fmt::format("holds these zeros already; {} is without them",
+                                           backup.filename().string()));
+    return;
+  }
+  for (const std::string& change : patch.changes) files.said.note({name, 0}, change);
+  files.sets.push_back(
+      {folder_of(file.string()),
+       {{backup_name(file, n + 1), text}, {file.filename().string(), patch.text}}});
+}
+
+void add_xacro(const std::string& name, const Input& input, const std::string& calibrated,
+               RobotFiles& files) {
+  const fs::path file = file_behind(name);
+  const std::string text = detail::read_text_file(name);
+  const XacroPatch patch = patch_xacro(text, name, input.urdf_text, calibrated);
+  if (!patch.patched.empty()) {
+    files.said.note({name, 0}, fmt::format("has the calibration of {}: {}",
+                                           counted(patch.patched.size(), "joint"),
+                                           fmt::join(patch.patched, ", ")));
+  }
+  for (const std::string& unpatched : patch.unpatched) files.said.warnings.push_back(unpatched);
+  if (patch.text == text) return;
+  files.sets.push_back({folder_of(file.string()), {{file.filename().string(), patch.text}}});
+}
+
+bool is_same(const std::string& one, const std::string& other) {
+  std::error_code missing;
+  return fs::equivalent(one, other, missing);
+}
+
+}  // namespace
+
+void check_robot_files(const ResultOptions& options, const Input& input) {
+  const RobotFileOptions& of = options.robot_files;
+  std::vector<std::string> inputs = options.samples;
+  inputs.insert(inputs.end(), {options.urdf, options.config});
+  for (const std::string& name : {of.kinematics, of.homing, of.xacro}) {
+    if (name.empty()) continue;
+    if (name == "-") throw InputError("'-' is no file that can be patched; give its name");
+    for (const std::string& other : inputs) {
+      if (!is_same(name, other)) continue;
+      throw OutputError(name + ": would replace an input; choose another file");
+    }
+    inputs.push_back(name);
+    const OutputFolder can_be_written(folder_of(file_behind(name).string()));
+  }
+  (void)robot_files(options, input, {}, input.urdf_text);
+}
+
+RobotFiles robot_files(const ResultOptions& options, const Input& input,
+                       const std::vector<JointPatch>& patches, const std::string& calibrated) {
+  const RobotFileOptions& of = options.robot_files;
+  RobotFiles files;
+  if (!of.kinematics.empty()) add_kinematics(of.kinematics, input, patches, files);
+  if (!of.homing.empty()) add_homing(of, input, patches, files);
+  if (!of.xacro.empty()) add_xacro(of.xacro, input, calibrated, files);
+  return files;
+}
+
+void write(const RobotFiles& files) {
+  for (const RobotFiles::Set& set : files.sets) OutputFolder(set.folder).write(set.files);
+  print(files.said);
+}
+
+}  // namespace kinecal::cli

@@ -1,0 +1,42 @@
+// Files of a robot's own programs that a calibration is written into: origins, homing offsets, xacro.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "kinecal/files/results/output_file.hpp"
+#include "kinecal/files/urdf/patch_urdf.hpp"
+
+namespace kinecal::cli {
+
+/// The files with their new contents; nothing is written yet.
+struct RobotFiles {
+  /// Files of one folder that belong together: a file, and a copy of it as it was.
+  struct Set {
+    std::filesystem::path folder;
+    std::vector<OutputFile> files;
+  };
+  std::vector<Set> sets;
+  Diagnostics said;  ///< what changes, and what cannot be written
+};
+
+/// Checks before the work that the files can be read and written, and are what they should be.
+/// @throws InputError   if one is missing or something else
+/// @throws OutputError  if one would replace an input, or its folder cannot be written to
+void check_robot_files(const ResultOptions& options, const Input& input);
+
+/// What a calibration makes of the files.
+/// @param calibrated  the URDF with the calibration, as it is written
+/// @throws InputError  if a file cannot hold it
+[[nodiscard]] RobotFiles robot_files(const ResultOptions& options, const Input& input,
+                                     const std::vector<JointPatch>& patches,
+                                     const std::string& calibrated);
+
+/// Writes each set of files completely or not at all, and prints what was said.
+void write(const RobotFiles& files);
+
+}  // namespace kinecal::cli
