@@ -206,6 +206,83 @@ TEST_F(Program, BothOffsetStylesDescribeTheSameRobot) {
   EXPECT_LE((a.rotation - b.rotation).norm() + (a.translation - b.translation).norm(), 1e-12);
 }
 
+/// The origins of tiny.urdf's joints by other means: what the robot's programs read.
+TEST_F(Program, OffsetsGoWhereTheUrdfHasThem) {
+  EXPECT_THAT(calibrate().out, HasSubstr("--offsets origin"));
+  EXPECT_THAT(read("out/calibrated.urdf"), HasSubstr("<calibration rising=\"0.0"));
+  EXPECT_THAT(calibrate("--offsets rising").out, Not(HasSubstr("--offsets origin")));
+  spoil("tiny.urdf", "</robot>",
+        "<ros2_control name=\"c\" type=\"system\"><joint name=\"elbow\">"
+        "<param name=\"offset\">0.5</param></joint></ros2_control>\n</robot>");
+  const Outcome found = calibrate();
+  EXPECT_EQ(found.code, 0) << found.err;
+  EXPECT_THAT(found.out, Not(HasSubstr("--offsets origin")));
+  EXPECT_THAT(read("out/calibrated.urdf"),
+              AllOf(ContainsRegex("<param name=\"offset\">0.5(19|2)"), Not(HasSubstr("rising"))));
+}
+
+TEST_F(Program, ARobotThatRos2ControlDoesNotHaveIsNamed) {
+  const Outcome refused = calibrate("--offsets ros2_control");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("error: tiny.urdf: <ros2_control> has no joint 'elbow'"));
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+/// A calibration with files of the robot's programs.
+TEST_F(Program, WritesOriginsHomingOffsetsAndXacro) {
+  const std::string homing =
+      "{\n \"elbow\": {\"id\": 2, \"drive_mode\": 0, \"homing_offset\": 100},\n"
+      " \"gripper\": {\"id\": 3, \"drive_mode\": 0, \"homing_offset\": 5}\n}\n";
+  write("arm.json", homing);
+  std::string xacro = kUrdf;
+  xacro.replace(xacro.find("-0.3 0 1.2"), 10, "-0.3 0 ${h}");
+  write("tiny.xacro", xacro);
+  const std::string files =
+      "--offsets origin --kinematics k.yaml --homing arm.json --xacro tiny.xacro";
+  const Outcome result = calibrate(files);
+  EXPECT_EQ(result.code, 0) << result.err;
+  // the elbow's zero is 0.02 rad: 13.04 ticks
+  EXPECT_EQ(read("arm.json"), std::string(homing).replace(homing.find("100"), 3, "87"));
+  EXPECT_EQ(read("arm.json.backup_1"), homing);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("motors that are no joint: gripper"),
+                                HasSubstr("elbow: homing_offset 100 becomes 87")));
+  const YAML::Node elbow = YAML::LoadFile((folder_ / "k.yaml").string())["kinematics"]["elbow"];
+  EXPECT_NEAR(elbow["x"].as<double>(), 0.4, 1e-9);
+  EXPECT_NEAR(elbow["pitch"].as<double>(), 0.02, 1e-6);
+  EXPECT_THAT(read("tiny.xacro"),
+              AllOf(HasSubstr("xyz=\"-0.3 0 ${h}\""), HasSubstr("rpy=\"0 0.0")));
+  EXPECT_THAT(result.err, HasSubstr("tiny.xacro:29: joint 'mast_joint': xyz=\"-0.3 0 ${h}\" is an "
+                                    "expression; it should become xyz="));
+  const std::string patched = read("tiny.xacro"), kinematics = read("k.yaml");
+  const Outcome again = calibrate(files);
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("holds these zeros already"));
+  EXPECT_EQ(read("arm.json"), std::string(homing).replace(homing.find("100"), 3, "87"));
+  EXPECT_EQ(read("tiny.xacro"), patched);
+  EXPECT_EQ(read("k.yaml"), kinematics);
+}
+
+/// Before the work begins, and before anything is written.
+TEST_F(Program, FilesThatCannotBePatchedAreRefused) {
+  write("other.yaml", "a: 1\n");
+  write("other.json", "{\"motor\": {\"homing_offset\": 1}}");
+  const auto expect_refusal = [&](const std::string& option, const std::string& message) {
+    const Outcome refused = calibrate(option);
+    EXPECT_EQ(refused.code, 1) << option;
+    EXPECT_THAT(refused.err, HasSubstr("error: " + message)) << option;
+    EXPECT_FALSE(fs::exists(folder_ / "out")) << option;
+  };
+  expect_refusal("--kinematics other.yaml", "other.yaml: exists and has no 'kinematics:'");
+  expect_refusal("--kinematics c.yaml", "c.yaml: would replace an input");
+  expect_refusal("--homing missing.json", "missing.json: cannot be read: No such file");
+  expect_refusal("--homing other.json", "other.json: no motor has the name of a joint");
+  expect_refusal("--xacro missing.xacro", "missing.xacro: cannot be read");
+  expect_refusal("--xacro c.yaml", "c.yaml: would replace an input");
+  expect_refusal("--xacro other.yaml", "other.yaml:");
+  expect_refusal("--kinematics /proc/k.yaml", "/proc");
+  EXPECT_EQ(read("other.yaml"), "a: 1\n");
+}
+
 TEST_F(Program, GivesTheSameBytesForTheSameInput) {
   ASSERT_EQ(calibrate().code, 0);
   const std::string urdf = read("out/calibrated.urdf"), yaml = read("out/calibration.yaml");
