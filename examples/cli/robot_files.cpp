@@ -93,7 +93,7 @@ void add_xacro(const std::string& name, const Input& input, const std::string& c
   files.sets.push_back({folder_of(file.string()), {{file.filename().string(), patch.text}}});
 }
 
-bool is_same(const std::string& one, const std::string& other) {
+bool names_same_file(const std::string& one, const std::string& other) {
   std::error_code missing;
   return fs::equivalent(one, other, missing);
 }
@@ -108,7 +108,7 @@ void check_robot_files(const ResultOptions& options, const Input& input) {
     if (name.empty()) continue;
     if (name == "-") throw InputError("'-' is no file that can be patched; give its name");
     for (const std::string& other : inputs) {
-      if (!is_same(name, other)) continue;
+      if (!names_same_file(name, other)) continue;
       throw OutputError(name + ": would replace an input; choose another file");
     }
     inputs.push_back(name);

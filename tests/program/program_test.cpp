@@ -251,7 +251,7 @@ TEST_F(Program, WritesOriginsHomingOffsetsAndXacro) {
   EXPECT_NEAR(elbow["pitch"].as<double>(), 0.02, 1e-6);
   EXPECT_THAT(read("tiny.xacro"),
               AllOf(HasSubstr("xyz=\"-0.3 0 ${h}\""), HasSubstr("rpy=\"0 0.0")));
-  EXPECT_THAT(result.err, HasSubstr("tiny.xacro:29: joint 'mast_joint': xyz=\"-0.3 0 ${h}\" is an "
+  EXPECT_THAT(result.err, HasSubstr("tiny.xacro:24: joint 'mast_joint': xyz=\"-0.3 0 ${h}\" is an "
                                     "expression; it should become xyz="));
   const std::string patched = read("tiny.xacro"), kinematics = read("k.yaml");
   const Outcome again = calibrate(files);

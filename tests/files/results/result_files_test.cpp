@@ -40,6 +40,7 @@ TEST(ResultFiles, CameraFilesAreNamedAsUpstreamNamesThem) {
 }
 
 TEST(ResultFiles, ValuesAreThoseOfWhatWasCalibratedOrHeldAwayFromZero) {
+  const Robot robot = test::mobile_manipulator();
   CalibrationResult result;
   result.table.add({.name = "elbow", .value = 0.1});
   result.table.add({.name = "wrist", .value = 0.0});
@@ -47,11 +48,22 @@ TEST(ResultFiles, ValuesAreThoseOfWhatWasCalibratedOrHeldAwayFromZero) {
   result.table.add({.name = "untouched", .value = 0.0});
   result.table.add({.name = "a: b", .value = 1.0});
   result.calibrated = {0, 1};
-  EXPECT_EQ(detail::values_yaml(result, {}), "elbow: 0.1\nwrist: 0.0\nheld: 0.25\n\"a: b\": 1.0\n");
+  EXPECT_EQ(detail::values_yaml(robot, result, {}),
+            "elbow: 0.1\nwrist: 0.0\nheld: 0.25\n\"a: b\": 1.0\n");
   const std::map<int, double> deviations = {{0, 0.00234},
                                             {1, std::numeric_limits<double>::infinity()}};
-  EXPECT_EQ(detail::values_yaml(result, deviations),
+  EXPECT_EQ(detail::values_yaml(robot, result, deviations),
             "elbow: 0.1  # +- 0.0023\nwrist: 0.0  # not determined\nheld: 0.25\n\"a: b\": 1.0\n");
+}
+
+TEST(ResultFiles, WhatAUrdfCannotHoldHasItsFormula) {
+  CalibrationResult result;
+  result.table.add({.name = "elbow_gear_ratio", .value = 0.001});
+  result.table.add({.name = "elbow_eccentric_sin", .value = 0.002});
+  result.calibrated = {0, 1};
+  EXPECT_EQ(detail::values_yaml(test::mobile_manipulator(), result, {{1, 0.0003}}),
+            "elbow_gear_ratio: 0.001  # q_true = q + this * q\n"
+            "elbow_eccentric_sin: 0.002  # +- 0.0003; q_true = q + this * sin(q)\n");
 }
 
 }  // namespace
