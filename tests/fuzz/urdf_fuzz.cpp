@@ -30,7 +30,8 @@ std::vector<JointPatch> patches_for(const Robot& robot) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  for (const OffsetStyle style : {OffsetStyle::rising, OffsetStyle::origin}) {
+  for (const OffsetStyle style : {OffsetStyle::rising, OffsetStyle::origin, OffsetStyle::as_read,
+                                  OffsetStyle::ros2_control}) {
     std::string patched;
     Robot robot;
     try {

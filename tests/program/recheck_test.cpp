@@ -166,6 +166,25 @@ TEST_F(Recheck, FindsOutWhetherTheResultWasInForce) {
   EXPECT_EQ(with_new("verify", "--samples-recorded before").code, 2);
 }
 
+TEST_F(Recheck, KnowsOffsetsThatRos2ControlAdds) {
+  std::string joints;
+  for (const char* joint : {"lift", "elbow", "roll", "flex"}) {
+    joints +=
+        std::string("<joint name=\"") + joint + "\"><param name=\"offset\">0.1</param></joint>";
+  }
+  replace_in("arm.urdf", "</robot>",
+             "<ros2_control name=\"arm\" type=\"system\">" + joints + "</ros2_control></robot>");
+  calibrate();
+  EXPECT_THAT(read("out/calibrated.urdf"), Not(HasSubstr("rising")));
+  const YAML::Node values = YAML::Load(read("out/calibration.yaml"));
+  for (const char* joint : {"lift", "elbow", "roll", "flex"}) {
+    slip(new_, joint, -values[joint].as<double>());
+  }
+  const Outcome found = with_new("verify");
+  EXPECT_EQ(found.code, 0) << found.out;
+  EXPECT_THAT(found.out, HasSubstr("taken as recorded after the result was installed"));
+}
+
 TEST_F(Recheck, EvaluatesOtherSamplesBesideTheCalibration) {
   calibrate();
   slip(new_, "elbow", 0.004);
