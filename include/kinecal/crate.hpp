@@ -6,3 +6,4 @@
 #include "kinecal/crate/crate_checks.hpp"
 #include "kinecal/crate/crate_parts.hpp"
 #include "kinecal/crate/parameter_checks.hpp"
+#include "kinecal/crate/parameter_use.hpp"

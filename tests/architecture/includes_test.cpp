@@ -216,6 +216,7 @@ constexpr LongSource kLongSources[] = {
     {"geometry/packet.hpp", "a scalar and its functions for every instruction set"},
     {"kinematics/twist_walker.hpp", "the derivation of the twists and its one walker"},
     {"parameters/free_parameters.hpp", "every kind of free parameter as a type"},
+    {"parameters/joint_model.hpp", "what a joint model is, and all of them: ten lines each"},
     {"tools/install/launch_folder.ipp", "one sequence of file operations that may stop anywhere"},
 };
 

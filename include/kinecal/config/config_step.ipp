@@ -36,8 +36,8 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
     }
   }
   if (std::optional<ConfigMap> gravity = map.map("gravity", "gravity")) {
-    const double x = gravity->number("x", 0.0), y = gravity->number("y", 0.0);
-    progress.config.gravity = {x, y, gravity->number("z", 0.0)};
+    const auto along = [&](const char* axis) { return gravity->number(axis, 0.0); };
+    progress.config.gravity = {along("x"), along("y"), along("z")};
     gravity->report_unknown();
   }
   if (const auto link = map.text("payload_link")) progress.config.payload_link = *link;
@@ -58,10 +58,8 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   const auto image = map.text("image");
   if (!image) return ImageKind::automatic;
   const SourceLocation place = map.find("image")->place;
-  const SensorEntry* entry = registry().sensor(model.type);
-  if (entry != nullptr && !entry->has_image) {
-    map.error(place,
-              "image is a key of " + types_with_image() + ", but the type is '" + model.type + "'");
+  if (const auto* entry = registry().sensor(model.type); entry != nullptr && !entry->has_image) {
+    map.error(place, "image is a key of " + types_with_image() + ", not of '" + model.type + "'");
   }
   if (*image == "raw") return ImageKind::raw;
   if (*image == "rectified") return ImageKind::rectified;

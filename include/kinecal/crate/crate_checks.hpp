@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/crate/parameter_checks.hpp"
+#include "kinecal/crate/parameter_use.hpp"
 #include "kinecal/errors/block_checks.hpp"
 
 namespace kinecal::detail {

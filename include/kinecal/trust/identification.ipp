@@ -84,9 +84,7 @@ class Identification {
     step_.unknown_frames = unknown_;
   }
   /// Begins with the values of an earlier result.
-  void begin_at(const ParameterTable& table) {
-    for (int p = 0; p < table.size(); ++p) calibration_.table[p].value = table[p].value;
-  }
+  void begin_at(const ParameterTable& table) { calibration_.table = table; }
   /// begin_again() with another initial value of a candidate's parameter.
   void begin_with(int column, double change) {
     initial_[static_cast<std::size_t>(index(column))] += change;
