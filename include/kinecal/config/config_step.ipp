@@ -20,8 +20,7 @@ struct ConfigProgress {
   NothingFree nothing_free = NothingFree::is_error;
 };
 
-/// base_link, gravity, payload_link, verbose and max_num_iterations of the file or of a step.
-/// @return  max_num_iterations, or the fallback
+/// Reads the settings of the file or of a step; returns max_num_iterations, or the fallback.
 inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress) {
   map.ignore({"verbose"});
   if (const auto link = map.text("base_link")) {
@@ -59,7 +58,8 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   if (!image) return ImageKind::automatic;
   const SourceLocation place = map.find("image")->place;
   if (const auto* entry = registry().sensor(model.type); entry != nullptr && !entry->has_image) {
-    map.error(place, "image is a key of " + types_with_image() + ", not of '" + model.type + "'");
+    map.error(place,
+              "image is a key of " + types_with_image() + ", but the type is '" + model.type + "'");
   }
   if (*image == "raw") return ImageKind::raw;
   if (*image == "rectified") return ImageKind::rectified;
