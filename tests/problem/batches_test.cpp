@@ -85,17 +85,17 @@ void expect_lane(const detail::BatchObservation<S>& batch, int i,
   }
 }
 
-TEST(JointStates, HaveWhatAJointMovesByAndWithModelsItsPosition) {
+TEST(JointStates, HaveWhatAJointMovesByAndWithModelsTheirEffects) {
   const std::array numbers = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
   const JointState<double> turning = detail::JointStates<double, false>{numbers.data()}[1];
   EXPECT_EQ(turning.cos, 0.3);
   EXPECT_EQ(turning.sin, 0.4);
   const JointState<double> sliding = detail::JointStates<double, false>{numbers.data()}[2];
   EXPECT_EQ(sliding.position, 0.5);
-  const JointState<double> modelled = detail::JointStates<double, true>{numbers.data()}[1];
-  EXPECT_EQ(modelled.position, 0.4);
-  EXPECT_EQ(modelled.cos, 0.5);
-  EXPECT_EQ(modelled.sin, 0.6);
+  const detail::JointStates<double, true> modelled{numbers.data(), 1};  // one effect a joint
+  EXPECT_EQ(modelled[1].cos, 0.4);
+  EXPECT_EQ(modelled[1].sin, 0.5);
+  EXPECT_EQ(modelled.effects(1)[0], 0.6);
 }
 
 TEST(Batches, HoldASampleInEachLane) {
