@@ -42,15 +42,18 @@ class Identification {
           std::any_of(of.columns.begin(), of.columns.end(), [](int column) { return column < 0; });
       if (has_untouched) of.columns.clear();  // no residual depends on it
     }
-    largest_.resize(all_.size());
-    for (int c = 0; c < all_.size(); ++c) {
-      largest_(c) = plausible_change(*step_.problem, index(c)).care;
-    }
     // Once: each solve begins where the last one ended.
     for (const auto& [parameter, value] : step_.assignments)
       calibration.table[parameter].value = value;
     step_.assignments.clear();
     for (const Parameter& p : calibration.table) initial_.push_back(p.value);
+    largest_ = smallest_ = Eigen::VectorXd(all_.size());
+    for (int c = 0; c < all_.size(); ++c) {
+      const int p = index(c);
+      largest_(c) = plausible_change(*step_.problem, p).care;
+      smallest_(c) = is_never_negative(*step_.problem, p) ? -initial_[static_cast<std::size_t>(p)]
+                                                          : -largest_(c);
+    }
     sigmas_.resize(static_cast<std::size_t>(step_.problem->num_terms()), 0.0);
   }
 
@@ -70,7 +73,8 @@ class Identification {
     for (const int k : chosen) {
       for (const int c : columns_[static_cast<std::size_t>(k)].columns) {
         const auto p = static_cast<std::size_t>(index(c));
-        if (!(std::abs(values_[p] - initial_[p]) <= largest_(c))) return false;
+        const double change = values_[p] - initial_[p];
+        if (!(change <= largest_(c) && change >= smallest_(c))) return false;
       }
     }
     return true;
@@ -99,7 +103,6 @@ class Identification {
     };
     add(base_);
     for (const int k : chosen) add(columns_[static_cast<std::size_t>(k)].columns);
-    // What is held again is what it was.
     for (int p = 0; p < calibration_.table.size(); ++p) {
       if (std::find(free.begin(), free.end(), p) == free.end()) {
         calibration_.table[p].value = initial_[static_cast<std::size_t>(p)];
@@ -125,8 +128,7 @@ class Identification {
     return result;
   }
 
-  /// Linearized at the solution, with what candidates explain back in the residuals: a subset begins with their
-  /// initial values.
+  /// Linearized at the solution; candidates begin with their initial values, so what they explain is in the residuals.
   [[nodiscard]] ParameterSearch linearized() const {
     const auto evaluator = step_.problem->evaluator(all_, 1);
     const int n = all_.size();
@@ -142,17 +144,17 @@ class Identification {
     }
     fit.residual += fit.jacobian * back;
     fit.prior_gradient += fit.prior_hessian * back;
-    return {fit, poses_, largest_};
+    return {fit, poses_, largest_, smallest_};
   }
 
-  /// What a weighted residual of 1 is at the last solution: a distance of the error block; of several, 1: errors are in
-  /// units of their noise.
+  /// A weighted residual of 1 as a distance of the error block; of several blocks 1, as errors are in units of noise.
   [[nodiscard]] double distance_of_one() const {
     const Term& only = step_.problem->term(0);
     return sigmas_.size() > 1 ? 1.0 : std::sqrt(only.feature_size) / only.weight;
   }
-  /// The unit of these errors.
-  [[nodiscard]] std::string unit() const { return sigmas_.size() > 1 ? "1" : noise_unit(); }
+  [[nodiscard]] std::string unit() const {
+    return sigmas_.size() > 1 ? "1" : noise_unit();
+  }  ///< of it
 
  private:
   [[nodiscard]] int index(int column) const {
@@ -193,7 +195,7 @@ class Identification {
   std::vector<SearchCandidate> columns_;
   std::vector<int> base_;
   SearchPoses poses_;
-  Eigen::VectorXd largest_;
+  Eigen::VectorXd largest_, smallest_;  ///< plausible changes, by column
   std::vector<double> initial_, sigmas_, values_;
 };
 

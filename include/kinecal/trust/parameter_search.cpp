@@ -39,8 +39,9 @@ constexpr double kOwnShare = 1e-4;
 }  // namespace detail
 
 ParameterSearch::ParameterSearch(const LinearFit& fit, const SearchPoses& poses,
-                                 Eigen::VectorXd largest)
-    : largest_(std::move(largest)), weight_(fit.loss.sum()) {
+                                 Eigen::VectorXd largest, Eigen::VectorXd smallest)
+    : largest_(std::move(largest)), smallest_(std::move(smallest)), weight_(fit.loss.sum()) {
+  if (smallest_.size() == 0) smallest_ = -largest_;
   const Eigen::VectorXd root = fit.loss.cwiseSqrt();
   jacobian_ = root.asDiagonal() * fit.jacobian;
   residual_ = root.cwiseProduct(fit.residual);
@@ -98,8 +99,9 @@ bool ParameterSearch::is_plausible(const Whole& whole, std::size_t from) const {
   for (std::size_t i = from; i < whole.columns.size(); ++i) {
     const double largest = largest_(whole.columns[i]);
     const auto at = static_cast<Eigen::Index>(i);
-    if (!(std::abs(whole.change(at)) <= largest && whole.deviation(at) <= kHardly * largest))
-      return false;
+    const double change = whole.change(at);
+    if (!(change <= largest && change >= smallest_(whole.columns[i]))) return false;
+    if (!(whole.deviation(at) <= kHardly * largest)) return false;
   }
   return true;
 }

@@ -55,8 +55,10 @@ class ParameterSearch {
 
   /// @param fit      linearized by all columns, as plain parameters
   /// @param poses    of the samples of the problem
-  /// @param largest  (columns) plausible change of each parameter
-  ParameterSearch(const LinearFit& fit, const SearchPoses& poses, Eigen::VectorXd largest);
+  /// @param largest   (columns) plausible change of each parameter
+  /// @param smallest  (columns) the same downwards; empty: -largest
+  ParameterSearch(const LinearFit& fit, const SearchPoses& poses, Eigen::VectorXd largest,
+                  Eigen::VectorXd smallest = {});
 
   /// Columns without those that are combinations of others before them.
   [[nodiscard]] std::vector<int> independent(const std::vector<int>& columns) const;
@@ -156,7 +158,7 @@ class ParameterSearch {
   Eigen::MatrixXd squared_;                ///< J^T J, priors included
   Eigen::VectorXd gradient_;               ///< J^T r, priors included
   Eigen::VectorXd scale_;                  ///< (columns) lengths
-  Eigen::VectorXd largest_;                ///< (columns)
+  Eigen::VectorXd largest_, smallest_;     ///< (columns)
   std::vector<int> pose_, fold_, region_;  ///< of each row
   double weight_ = 0.0;                    ///< of all rows
   int poses_ = 0;

@@ -66,7 +66,15 @@ struct Limits {
   return p.unit == "1" ? Limits{0.09, 0.3} : Limits{kNever, kNever};
 }
 
-/// The same in a step: a frame that was searched for may be anywhere, too.
+/// True for a parameter that is never negative: nothing rises under its load, and play has a size.
+[[nodiscard]] inline bool is_never_negative(const AnyProblem& problem, int parameter) {
+  const auto of = joint_model_parameter(problem.robot(), problem.table()[parameter].name);
+  if (!of || of->model == nullptr) return false;
+  const std::string_view name = of->model->parameters()[of->part].name;
+  return name == "sag" || name == "link_sag" || name == "backlash" || name == "load_backlash";
+}
+
+/// plausible_change() in a step: a frame that was searched for may be anywhere, too.
 [[nodiscard]] inline Limits plausible_change(const CalibrationStep& step, int parameter) {
   constexpr double kNever = 1e300;
   const std::string& owner = step.problem->owners()[static_cast<std::size_t>(parameter)];
