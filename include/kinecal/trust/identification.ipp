@@ -51,13 +51,12 @@ class Identification {
     for (int c = 0; c < all_.size(); ++c) {
       const int p = index(c);
       largest_(c) = plausible_change(*step_.problem, p).care;
-      smallest_(c) = is_never_negative(*step_.problem, p) ? -initial_[static_cast<std::size_t>(p)]
-                                                          : -largest_(c);
+      const bool positive = is_never_negative(*step_.problem, p);
+      smallest_(c) = positive ? -calibration.table[p].value : -largest_(c);
     }
     sigmas_.resize(static_cast<std::size_t>(step_.problem->num_terms()), 0.0);
   }
 
-  /// Their columns, in the order of the candidates.
   [[nodiscard]] const std::vector<SearchCandidate>& candidates() const { return columns_; }
   [[nodiscard]] const std::vector<int>& base() const { return base_; }  ///< columns
   /// The parameter of a column.
@@ -152,9 +151,8 @@ class Identification {
     const Term& only = step_.problem->term(0);
     return sigmas_.size() > 1 ? 1.0 : std::sqrt(only.feature_size) / only.weight;
   }
-  [[nodiscard]] std::string unit() const {
-    return sigmas_.size() > 1 ? "1" : noise_unit();
-  }  ///< of it
+  /// The unit of such distances.
+  [[nodiscard]] std::string unit() const { return sigmas_.size() > 1 ? "1" : noise_unit(); }
 
  private:
   [[nodiscard]] int index(int column) const {
