@@ -19,10 +19,8 @@
 //     "cameras": [{"name", "link", "pose": [7], "width", "height", "fx", "fy", "cx", "cy"}],
 //     "workspace": {"unit": "mm", "points": [[x, y, z, error], ...]} }
 //
-// A joint is at  multiplier * (q + change) + offset + correction's offset;  `change` is zero unless
-// a correction has "model": [g, s, c]:  g q + s sin(q) + c (cos(q) - 1),  see
-// kinematics/joint_model.hpp.  Missing items are omitted: a correction, a note, a point behind a
-// camera.
+// A joint is at  multiplier * q + offset + correction's offset, without joint models, which are too small to be
+// seen.  Missing items are omitted: a correction, a note, a point behind a camera.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -48,7 +48,7 @@ enum class OffsetStyle {
 /// @param patches            at most one for each joint; no offsets for joints that mimic another
 /// @throws InputError  if a joint is not in the text, has two patches, or has an offset but no
 ///                     position of its own; if a number that changes cannot be read; if
-///                     <ros2_control> should hold an offset and does not have the joint
+///                     `ros2_control` should hold an offset and does not have the joint
 /// Source: robot_calibration, `calibrated_<date>.urdf`.
 [[nodiscard]] std::string patch_urdf(const std::string& text, const std::string& name_for_messages,
                                      const Robot& robot, const std::vector<JointPatch>& patches,
@@ -59,7 +59,7 @@ enum class OffsetStyle {
 [[nodiscard]] bool goes_into_rising(const std::string& text, const std::string& name_for_messages,
                                     const Robot& robot, const std::vector<JointPatch>& patches);
 
-/// The nonzero offsets of joints in <ros2_control>, radians or metres as the driver has them.
+/// The nonzero offsets of joints in `ros2_control`, radians or metres as the driver has them.
 /// @param text               the URDF, UTF-8
 /// @param name_for_messages  name of the text in messages: its file
 /// @throws InputError  if the text is not XML
