@@ -7,6 +7,7 @@
 #include <chrono>
 #include <ctime>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -107,10 +108,11 @@ void check_results(const ResultOptions& options) {
 
 ResultFileOptions file_options(const ResultOptions& options) {
   ResultFileOptions files;
-  files.offsets = options.offsets == "origin"         ? OffsetStyle::origin
-                  : options.offsets == "rising"       ? OffsetStyle::rising
-                  : options.offsets == "ros2_control" ? OffsetStyle::ros2_control
-                                                      : OffsetStyle::as_read;
+  const std::map<std::string, OffsetStyle> styles = {{"", OffsetStyle::as_read},
+                                                     {"origin", OffsetStyle::origin},
+                                                     {"rising", OffsetStyle::rising},
+                                                     {"ros2_control", OffsetStyle::ros2_control}};
+  files.offsets = styles.at(options.offsets);
   if (options.upstream_names) {
     files.date = fmt::format("{:%Y_%m_%d_%H_%M_%S}", fmt::localtime(std::time(nullptr)));
   }
@@ -134,8 +136,8 @@ std::string offsets_text(const ResultOptions& options, const Input& input,
     return "";
   }
   return "\nzeros of joints are in <calibration rising> of the URDF, which robot_state_publisher, "
-         "MoveIt and "
-         "most drivers do not read; --offsets origin puts them into the origins, which all read\n";
+         "MoveIt and most drivers do not read; --offsets origin puts them into the origins, which "
+         "all read\n";
 }
 
 /// The scene must not replace an input or a report, and another file only on demand.

@@ -4,6 +4,7 @@
 
 #include "kinecal/text/characters.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/text/first_names.hpp"
 #include "kinecal/text/fixed_string.hpp"
 #include "kinecal/text/frame_name.hpp"
 #include "kinecal/text/nearest_name.hpp"

@@ -264,9 +264,8 @@ TEST_F(MeasuredJoints, MoveAsTheHeaderForDriversSays) {
       {"elbow_second_harmonic_cos", &JointErrors::second_harmonic_cos},
       {"elbow_sag", &JointErrors::sag},
       {"elbow_backlash", &JointErrors::backlash},
-      {"elbow_load_backlash", &JointErrors::load_backlash},
-      {"elbow_coupling_wrist", &JointErrors::coupling}};
-  std::vector<std::string> names;
+      {"elbow_load_backlash", &JointErrors::load_backlash}};
+  std::vector<std::string> names = {"elbow_coupling_wrist", "elbow_link_sag_hand"};
   for (const auto& [name, member] : all) names.push_back(name);
   const Problem of_models = problem(names);
   const SampledChain& chain = of_models.sensors()[0].chains()[0];
@@ -274,10 +273,16 @@ TEST_F(MeasuredJoints, MoveAsTheHeaderForDriversSays) {
   sample.joint_moves.assign(sample.joint_names.size(), -0.3);
   GravityLoads loads(
       robot_, [&](const std::string& joint) { return sample.position(joint).value_or(0.0); });
-  MeasuredJoint measured{position(sample, "elbow"), loads.of_links().at("elbow"), -1.0,
-                         position(sample, "wrist")};
+  GravityLoads::ByJoint of_kilogram;
+  loads.add("hand", Vector3<double>::Zero(), 1.0, of_kilogram);
+  constexpr double kCoupling = 0.02, kLinkSag = 0.003;
+  const MeasuredJoint measured{
+      position(sample, "elbow"), loads.of_links().at("elbow"), -1.0,
+      kCoupling * position(sample, "wrist") + kLinkSag * of_kilogram.at("elbow")};
   JointErrors errors;
   std::vector<double> values(static_cast<std::size_t>(of_models.table().size()), 0.0);
+  values[static_cast<std::size_t>(of_models.table().index(names[0]))] = kCoupling;
+  values[static_cast<std::size_t>(of_models.table().index(names[1]))] = kLinkSag;
   double value = 0.01;
   for (const auto& [name, member] : all) {
     errors.*member = value = -0.9 * value;

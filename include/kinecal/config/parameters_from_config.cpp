@@ -125,8 +125,7 @@ inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
   }
 }
 
-/// Name of the lag of a sensor behind the positions of the joints.
-[[nodiscard]] inline std::string lag_name(const ModelConfig& model) {
+std::string lag_name(const ModelConfig& model) {
   return parameter_name(mount_from(model).parameter_prefix(), kLag.name);
 }
 

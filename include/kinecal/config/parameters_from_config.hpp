@@ -23,6 +23,8 @@ namespace kinecal::detail {
 
 /// Where the sensor of a model is mounted, and its names.
 [[nodiscard]] Mount mount_from(const ModelConfig& model);
+/// Name of the lag of a model's sensor behind the positions of the joints.
+[[nodiscard]] std::string lag_name(const ModelConfig& model);
 
 /// The own parameters of an error block; empty if its numbers are impossible.
 [[nodiscard]] std::vector<ParameterInfo> own_parameters(const BlockConfig& block);

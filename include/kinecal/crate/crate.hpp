@@ -144,15 +144,15 @@ class Crate {
       add_joint_offset(table, P::kOwner, RobotOf::kJoints[i].type);
     } else if constexpr (P::kKind == ParameterKind::joint_model) {
       if constexpr (requires { typename P::Model; }) register_joint_model(typename P::Model{});
+      const Robot of_crate = robot();
       for (const ParameterId& id : P::kIds) {
-        if (table.find(id.name()) >= 0) continue;
-        table.add({.name = id.name(), .unit = joint_model_parameter(robot(), id.full_name)->unit});
+        table.add({.name = id.name(), .unit = checked_joint_model(of_crate, id.name()).unit});
       }
     } else if constexpr (is_frame(P::kKind)) {
       add_parameters(table, P::kOwner, kFrameParameters);
     } else if constexpr (P::kKind == ParameterKind::sensor) {
       for (const ParameterId& id : P::kIds) {
-        if (id.part == "lag") add_parameters(table, P::kOwner, {&kLag, 1});
+        if (id.part == kLag.name) add_parameters(table, P::kOwner, {&kLag, 1});
       }
     }
   }

@@ -6,7 +6,8 @@
 //   const double q = true_position(elbow, {.position = measured});
 //
 // Leave out `offset` if the URDF already holds it (--offsets origin, or a driver that reads rising).
-// A lag is the sensor's: evaluate at the time of its measurement, or add lag * velocity.
+// What depends on more than the joint itself is summed up in `along`: coupling * position of the other
+// joint, link_sag * load of 1 kg at that link, and for a sensor with a lag, lag * velocity.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,7 +23,6 @@ struct JointErrors {
   double second_harmonic_sin = 0.0, second_harmonic_cos = 0.0;  ///< radians
   double sag = 0.0;                                             ///< rad/Nm or m/N
   double backlash = 0.0, load_backlash = 0.0;                   ///< radians or metres
-  double coupling = 0.0;                                        ///< of one other joint
 };
 
 /// What a driver knows of a joint.
@@ -30,7 +30,7 @@ struct MeasuredJoint {
   double position = 0.0;   ///< of the encoder, radians or metres
   double load = 0.0;       ///< torque of gravity about the axis, N m, or force along it, N
   double direction = 0.0;  ///< of the last motion: 1 or -1
-  double other = 0.0;      ///< position of the joint that moves it along, radians or metres
+  double along = 0.0;      ///< what moves it along: see above; radians or metres
 };
 
 /// The true position, radians or metres.
@@ -39,7 +39,7 @@ struct MeasuredJoint {
   return q + e.offset + e.gear_ratio * q + e.eccentric_sin * std::sin(q) +
          e.eccentric_cos * (std::cos(q) - 1.0) + e.second_harmonic_sin * std::sin(2.0 * q) +
          e.second_harmonic_cos * (std::cos(2.0 * q) - 1.0) + e.sag * m.load -
-         0.5 * e.backlash * m.direction + e.load_backlash * pull + e.coupling * m.other;
+         0.5 * e.backlash * m.direction + e.load_backlash * pull + m.along;
 }
 
 }  // namespace kinecal

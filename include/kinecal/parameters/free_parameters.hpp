@@ -17,6 +17,7 @@
 #pragma once
 
 #include "kinecal/parameters/chain_parameters.hpp"
+#include "kinecal/parameters/joint_model.hpp"
 #include "kinecal/parameters/parameter.hpp"
 #include "kinecal/text/fixed_string.hpp"
 
@@ -155,6 +156,9 @@ struct JointModelParameters : OwnedParameters<ParameterKind::joint_model, Joint,
 /// All parameters of a joint model of your own: OwnJointModel<"elbow", Worm>.
 template <FixedString Joint, class M>
 struct OwnJointModel {
+  static_assert(partner_of<M>() == ModelPartner::none,
+                "kinecal: the parameters of this joint model name another joint or a link; write "
+                "JointModelParameters with their names instead");
   using Model = M;                                                    ///< the joint model
   static constexpr ParameterKind kKind = ParameterKind::joint_model;  ///< what it corrects
   static constexpr std::string_view kOwner = Joint;                   ///< name of the joint

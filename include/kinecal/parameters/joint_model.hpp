@@ -102,8 +102,9 @@ struct Sag {
   static constexpr std::array<ParameterInfo, 1> kParameters = {
       {{"sag", "rad/Nm"}}};  ///< compliance
   static constexpr std::array<std::string_view, 1> kFormulas = {
-      "load (gravity about the axis, N m)"};  ///< effects
-  static constexpr bool kNeedsMasses = true;  ///< those of the URDF
+      "load (gravity about the axis, N m)"};    ///< effects
+  static constexpr bool kNeedsMasses = true;    ///< those of the URDF
+  static constexpr bool kNeverNegative = true;  ///< all of them
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
   /// Effects of the parameters.
@@ -119,6 +120,7 @@ struct LinkSag {
   static constexpr std::array<std::string_view, 1> kFormulas = {
       "load of 1 kg there (N m)"};                              ///< effects
   static constexpr ModelPartner kPartner = ModelPartner::link;  ///< the link with the mass
+  static constexpr bool kNeverNegative = true;                  ///< all of them
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
   /// Effects of the parameters.
@@ -147,6 +149,7 @@ struct Backlash {
   static constexpr std::array<ParameterInfo, 1> kParameters = {{{"backlash", "rad"}}};  ///< the gap
   static constexpr std::array<std::string_view, 1> kFormulas = {
       "(-1/2 after a motion up, 1/2 after one down)"};  ///< effects
+  static constexpr bool kNeverNegative = true;          ///< all of them
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
   /// Effects of the parameters.
@@ -162,6 +165,7 @@ struct LoadBacklash {
   static constexpr std::array<std::string_view, 1> kFormulas = {
       "(1/2 where gravity pulls up, else -1/2)"};  ///< effects
   static constexpr bool kNeedsMasses = true;       ///< those of the URDF
+  static constexpr bool kNeverNegative = true;     ///< all of them
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
   /// Effects of the parameters.
@@ -185,9 +189,16 @@ struct MimicErrors {
   }
 };
 
-/// What every sensor may have: how much later it measured than the joints, seconds.  Its effect on a
-/// joint is the joint's velocity.
-inline constexpr ParameterInfo kLag = {"lag", "s"};
+/// How much later a sensor measured than the joints: of each sensor, on all joints that move it.
+struct SensorLag {
+  static constexpr std::array<ParameterInfo, 1> kParameters = {{{"lag", "s"}}};  ///< the time
+  /// Effects of the parameters.
+  [[nodiscard]] std::array<double, 1> operator()(const JointReading& joint) const {
+    return {joint.velocity()};
+  }
+};
+/// Its parameter.
+inline constexpr ParameterInfo kLag = SensorLag::kParameters[0];
 
 /// The joint models that every program has.
 using JointModels = std::tuple<GearRatio, EccentricEncoder, SecondHarmonic, Sag, LinkSag, Coupling,
@@ -209,6 +220,13 @@ template <class M>
 template <class M>
 [[nodiscard]] constexpr bool needs_masses() {
   if constexpr (requires { M::kNeedsMasses; }) return M::kNeedsMasses;
+  return false;
+}
+/// True if the parameters of a model are never negative: nothing rises under its load, and play has a
+/// size.
+template <class M>
+[[nodiscard]] constexpr bool is_never_negative() {
+  if constexpr (requires { M::kNeverNegative; }) return M::kNeverNegative;
   return false;
 }
 /// True if a joint of this type, which moves, may have a model; without suits(), rotating joints

@@ -28,7 +28,8 @@ class AnyJointModel {
   [[nodiscard]] virtual ModelPartner partner() const = 0;                       ///< in their names
   /// The effect of a parameter as a formula of the reading q, for people; may be empty.
   [[nodiscard]] virtual std::string_view formula(std::size_t part) const = 0;
-  [[nodiscard]] virtual bool needs_masses() const = 0;  ///< of the links
+  [[nodiscard]] virtual bool is_never_negative() const = 0;  ///< its parameters
+  [[nodiscard]] virtual bool needs_masses() const = 0;       ///< of the links
   /// True if a joint of this type, which moves, may have it.
   [[nodiscard]] virtual bool suits(JointType type, bool is_mimic) const = 0;
   /// The effect of a parameter: radians or metres per unit.
@@ -51,6 +52,7 @@ class JointModelOf final : public AnyJointModel {
   [[nodiscard]] std::string_view formula(std::size_t part) const override {
     return formula_of<M>(part);
   }
+  [[nodiscard]] bool is_never_negative() const override { return kinecal::is_never_negative<M>(); }
   [[nodiscard]] bool needs_masses() const override { return kinecal::needs_masses<M>(); }
   [[nodiscard]] bool suits(JointType type, bool is_mimic) const override {
     return suits_joint<M>(type, is_mimic);
@@ -100,6 +102,10 @@ struct JointModelParameter {
 /// joint model.
 [[nodiscard]] std::optional<JointModelParameter> joint_model_parameter(const Robot& robot,
                                                                        std::string_view name);
+
+/// The same.
+/// @throws RobotError  if it is not one, or the joint cannot have it
+[[nodiscard]] JointModelParameter checked_joint_model(const Robot& robot, const std::string& name);
 
 /// Names of all parameters of joint models that a joint may have, in the order of the models; those
 /// with partners once for each other joint that moves by itself, or each link.

@@ -121,6 +121,14 @@ KINECAL_INLINE std::optional<JointModelParameter> joint_model_parameter(const Ro
   return std::nullopt;
 }
 
+KINECAL_INLINE JointModelParameter checked_joint_model(const Robot& robot,
+                                                       const std::string& name) {
+  const std::optional<JointModelParameter> of = joint_model_parameter(robot, name);
+  if (!of) throw RobotError("parameter '" + name + "' is not of a joint model");
+  if (of->fault.empty()) return *of;
+  throw RobotError("parameter '" + name + "': joint '" + of->joint + "' " + of->fault);
+}
+
 KINECAL_INLINE std::vector<std::string> joint_model_names(const Robot& robot, const Joint& joint) {
   std::vector<std::string> names;
   const auto add = [&](const ParameterInfo& info, const std::string& partner) {

@@ -19,4 +19,5 @@ inline void add_joint_offset(ParameterTable& table, std::string_view joint, Join
   if (table.find(name) >= 0) return;
   table.add({.name = name, .unit = std::string(position_unit(type))});
 }
+
 }  // namespace kinecal

@@ -44,8 +44,8 @@ class SampledChain {
  private:
   /// How a parameter moves a joint of the chain.
   struct Effect {
-    JointModelParameter parameter;  ///< without model: the lag
-    double factor = 1.0;            ///< the multiplier of a mimic joint
+    JointModelParameter parameter;
+    double factor = 1.0;  ///< the multiplier of a mimic joint
   };
 
   RuntimeChain chain_;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -23,39 +22,35 @@ KINECAL_INLINE SampledChain::SampledChain(const Robot& robot, RuntimeChain chain
     if (robot_ == nullptr) robot_ = std::make_shared<const Robot>(robot);
   };
   for (int p = 0; p < table.size(); ++p) {
-    const std::optional<JointModelParameter> of = joint_model_parameter(robot, table[p].name);
-    if (!of) continue;
-    if (!of->fault.empty()) {
-      throw RobotError("parameter '" + table[p].name + "': joint '" + of->joint + "' " + of->fault);
-    }
-    const bool of_mimic = robot.joint(of->joint).mimic.has_value();
+    if (!joint_model_parameter(robot, table[p].name)) continue;
+    const JointModelParameter of = checked_joint_model(robot, table[p].name);
+    const bool of_mimic = robot.joint(of.joint).mimic.has_value();
     for (std::size_t i = 0; i < chain_.joints.size(); ++i) {
       const ChainJoint& joint = chain_.joints[i];
-      if (!moves(joint.type) || (of_mimic ? joint.name : joint.drive.joint) != of->joint) continue;
-      add(i, p, {*of, of_mimic ? 1.0 : joint.drive.multiplier});
+      if (!moves(joint.type) || (of_mimic ? joint.name : joint.drive.joint) != of.joint) continue;
+      add(i, p, {of, of_mimic ? 1.0 : joint.drive.multiplier});
     }
   }
+  static const detail::JointModelOf<SensorLag> lag_model{SensorLag{}};
   for (std::size_t i = 0; lag >= 0 && i < chain_.joints.size(); ++i) {
     const ChainJoint& joint = chain_.joints[i];
     if (!moves(joint.type)) continue;
-    JointModelParameter of;
-    of.joint = joint.drive.joint;
-    add(i, lag, {std::move(of), joint.drive.multiplier});
+    add(i, lag, {{&lag_model, 0, joint.drive.joint, {}, {}, {}}, joint.drive.multiplier});
   }
 }
 
 KINECAL_INLINE bool SampledChain::has_joints(const Sample& sample) const {
-  return std::all_of(chain_.joints.begin(), chain_.joints.end(),
-                     [&](const ChainJoint& joint) {
-                       return !moves(joint.type) || sample.position(joint.drive.joint);
-                     }) &&
-         std::all_of(effects_.begin(), effects_.end(), [&](const std::vector<Effect>& of_joint) {
-           return std::all_of(of_joint.begin(), of_joint.end(), [&](const Effect& effect) {
-             const JointModelParameter& of = effect.parameter;
-             return of.model == nullptr || of.model->partner() != ModelPartner::joint ||
-                    sample.position(of.partner);
-           });
-         });
+  const auto has = [&](const std::string& joint) { return sample.position(joint).has_value(); };
+  for (const ChainJoint& joint : chain_.joints) {
+    if (moves(joint.type) && !has(joint.drive.joint)) return false;
+  }
+  for (const std::vector<Effect>& of_joint : effects_) {  // joints that move others along
+    for (const Effect& effect : of_joint) {
+      const JointModelParameter& of = effect.parameter;
+      if (of.model->partner() == ModelPartner::joint && !has(of.partner)) return false;
+    }
+  }
+  return true;
 }
 
 KINECAL_INLINE ModelledMotions SampledChain::motions(const Sample& sample, Unknown unknown) const {
@@ -69,8 +64,7 @@ KINECAL_INLINE ModelledMotions SampledChain::motions(const Sample& sample, Unkno
     for (const Effect& effect : effects_[i]) {
       const JointModelParameter& of = effect.parameter;
       const detail::SampleReading reading(sample, of.joint, loads, unknown == Unknown::at_rest);
-      const double unit =
-          of.model == nullptr ? reading.velocity() : of.model->effect(of.part, reading, of.partner);
+      const double unit = of.model->effect(of.part, reading, of.partner);
       if (!std::isfinite(unit)) {
         throw SampleError("the effect of a joint model of '" + of.joint + "' is not a number");
       }

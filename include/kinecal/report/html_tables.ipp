@@ -11,6 +11,7 @@
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/html_sections.ipp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/text/first_names.hpp"
 
 namespace kinecal::detail {
 
@@ -105,16 +106,6 @@ namespace kinecal::detail {
   }
   return unobservable_text(data) + "<p>With one standard deviation.</p>\n" +
          html_table(rows, "tnnntt");
-}
-
-/// Some names, and how many more there are.
-[[nodiscard]] inline std::string first_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 4;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) {
-    text += (i == 0 ? "" : ", ") + names[i];
-  }
-  return names.size() > kShown ? text + fmt::format(" and {} more", names.size() - kShown) : text;
 }
 
 /// What each step of a search bought, and what was tried and not freed.

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -12,26 +13,32 @@
 
 namespace kinecal {
 
-/// Sets Sample::joint_moves: the distance of each joint from where it stood before, in the samples
-/// of one recording.  Smaller distances than 1e-3 (radians or metres) are no move: the joint keeps
-/// the direction in which it moved last.
-/// @param samples  in the order of the recording
+/// The way of a joint through the poses of a recording.
+struct JointWay {
+  std::optional<double> stood = {};  ///< where it stood last, radians or metres
+  double move = 0.0;                 ///< how far it has come from where it stood before
+
+  /// Passes the next position.  Smaller distances than 1e-3 are no move: the joint keeps the
+  /// direction in which it moved last.
+  void pass(double position) {
+    constexpr double kStill = 1e-3;  // radians or metres
+    if (stood && std::abs(position - *stood) <= kStill) return;
+    if (stood) move = position - *stood;
+    stood = position;
+  }
+};
+
+/// Sets Sample::joint_moves: see JointWay.
+/// @param samples  of one recording, in its order
 inline void set_joint_moves(std::span<Sample> samples) {
-  constexpr double kStill = 1e-3;
-  struct Last {
-    double position, move;
-  };
-  std::map<std::string, Last> last;
+  std::map<std::string, JointWay> ways;
   for (Sample& sample : samples) {
     sample.joint_moves.assign(sample.joint_names.size(), 0.0);
     for (std::size_t i = 0; i < sample.joint_names.size() && i < sample.joint_positions.size();
          ++i) {
-      const double position = sample.joint_positions[i];
-      auto [known, is_new] = last.try_emplace(sample.joint_names[i], Last{position, 0.0});
-      if (const double move = position - known->second.position; std::abs(move) > kStill) {
-        known->second = {position, move};
-      }
-      sample.joint_moves[i] = known->second.move;
+      JointWay& way = ways[sample.joint_names[i]];
+      way.pass(sample.joint_positions[i]);
+      sample.joint_moves[i] = way.move;
     }
   }
 }

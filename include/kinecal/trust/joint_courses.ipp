@@ -10,6 +10,7 @@
 
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/problem/any_problem.hpp"
+#include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/trust/residual_pattern.hpp"
 
 namespace kinecal::detail {
@@ -101,15 +102,16 @@ struct JointTrack {
     if (std::isfinite(q)) sum += q, known += 1.0;
   }
   const double mean = sum / std::max(1.0, known);
-  constexpr double kMoved = 1e-3;  // radians or metres
-  double before = std::nan(""), direction = 0.0;
+  double before = std::nan("");
+  JointWay way;
   for (Eigen::Index s = 0; s < u.rows(); ++s) {
     const double q = track.at[static_cast<std::size_t>(s)];
     if (!std::isfinite(q)) continue;
-    if (std::abs(q - before) > kMoved) direction = q > before ? 1.0 : -1.0;
+    way.pass(q);
     if (course == ErrorCourse::zero) u(s, 0) = 1.0;
     if (course == ErrorCourse::gear) u(s, 0) = q - mean;
-    if (course == ErrorCourse::backlash) u(s, 0) = direction;
+    if (course == ErrorCourse::backlash)
+      u(s, 0) = way.move > 0.0 ? 1.0 : way.move < 0.0 ? -1.0 : 0.0;
     if (course == ErrorCourse::sag) u(s, 0) = track.raises[static_cast<std::size_t>(s)];
     if (course == ErrorCourse::lag && std::isfinite(before)) u(s, 0) = before - q;
     if (turn) u.row(s) << std::sin(q), std::cos(q);

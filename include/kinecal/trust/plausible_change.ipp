@@ -66,12 +66,10 @@ struct Limits {
   return p.unit == "1" ? Limits{0.09, 0.3} : Limits{kNever, kNever};
 }
 
-/// True for a parameter that is never negative: nothing rises under its load, and play has a size.
+/// True for a parameter that is never negative: sag, play.
 [[nodiscard]] inline bool is_never_negative(const AnyProblem& problem, int parameter) {
   const auto of = joint_model_parameter(problem.robot(), problem.table()[parameter].name);
-  if (!of || of->model == nullptr) return false;
-  const std::string_view name = of->model->parameters()[of->part].name;
-  return name == "sag" || name == "link_sag" || name == "backlash" || name == "load_backlash";
+  return of && of->model->is_never_negative();
 }
 
 /// plausible_change() in a step: a frame that was searched for may be anywhere, too.

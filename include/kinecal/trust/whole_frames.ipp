@@ -41,14 +41,14 @@ inline void take_whole_frames(Identification& search, Identified& found) {
         std::find(found.chosen.begin(), found.chosen.end(), frame) != found.chosen.end();
     if (is_chosen || search.candidates()[static_cast<std::size_t>(frame)].columns.size() < kFrame)
       continue;
-    const auto fit = [&](const std::vector<int>& chosen) {
-      const ParameterSearch linear = search.linearized();
+    const auto fit = [&](const ParameterSearch& linear, const std::vector<int>& chosen) {
       SearchFit of = linear.fit_of(linear.independent(search.base()), search.candidates(), chosen);
       of.held_out *= search.distance_of_one();
       return of;
     };
-    const SearchFit before = fit(found.chosen);
-    std::vector<int> with = with_frame(search.linearized(), search, frame, found.chosen);
+    const ParameterSearch now = search.linearized();
+    const SearchFit before = fit(now, found.chosen);
+    std::vector<int> with = with_frame(now, search, frame, found.chosen);
     CalibrationResult result = search.solve(with);
     if (result.converged) {
       const ParameterSearch linear = search.linearized();
@@ -56,7 +56,7 @@ inline void take_whole_frames(Identification& search, Identified& found) {
       result = search.solve(with);
     }
     if (result.converged && search.is_plausible(with) && with.size() < found.chosen.size()) {
-      const SearchFit after = fit(with);
+      const SearchFit after = fit(search.linearized(), with);
       if (after.columns <= before.columns && after.held_out <= kAsWell * before.held_out) {
         found.chosen = std::move(with);
         found.result = std::move(result);

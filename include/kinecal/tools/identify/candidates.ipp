@@ -18,15 +18,29 @@ namespace kinecal::detail {
 /// the order of joint_models().
 enum IdentifyRank { kZero, kMount, kOfSensor, kLagOfSensor, kGeometry, kJointModel };
 
-/// The joints that move some sensor or target, in the order of the robot; not those that mimic others.
-[[nodiscard]] inline std::vector<const Joint*> moving_joints(const Config& config,
-                                                             const Robot& robot) {
-  std::set<std::string> names;
+/// A model with the chain from the base to its sensor or target.
+struct ModelChain {
+  const ModelConfig* model = nullptr;
+  RuntimeChain chain;
+};
+
+/// The chains of all models that the robot has the links of.
+[[nodiscard]] inline std::vector<ModelChain> model_chains(const Config& config,
+                                                          const Robot& robot) {
+  std::vector<ModelChain> chains;
   for (const ModelConfig& model : config.steps.front().models) {
     if (!robot.has_link(model.frame) || !robot.has_link(config.base_link)) continue;
-    for (const ChainJoint& joint : make_chain(robot, config.base_link, model.frame).joints) {
-      names.insert(joint.drive.joint);
-    }
+    chains.push_back({&model, make_chain(robot, config.base_link, model.frame)});
+  }
+  return chains;
+}
+
+/// The joints that move some sensor or target, in the order of the robot; not those that mimic others.
+[[nodiscard]] inline std::vector<const Joint*> moving_joints(const std::vector<ModelChain>& chains,
+                                                             const Robot& robot) {
+  std::set<std::string> names;
+  for (const ModelChain& of : chains) {
+    for (const ChainJoint& joint : of.chain.joints) names.insert(joint.drive.joint);
   }
   std::vector<const Joint*> joints;
   for (const Joint& joint : robot.joints()) {

@@ -19,7 +19,7 @@ Config with_all_candidates(const Config& config, const Robot& robot,
   const auto free = [&](const std::string& name) {
     if (!detail::is_free(step, name)) step.free_params.push_back({name, step.place});
   };
-  for (const Joint* joint : detail::moving_joints(config, robot)) {
+  for (const Joint* joint : detail::moving_joints(detail::model_chains(config, robot), robot)) {
     free(joint->name);
     for (std::size_t axis = 0; axis < 6; ++axis) detail::free_axis(step, joint->name, axis);
   }
@@ -80,7 +80,8 @@ IdentifyTask identify_task(const Config& config, const AnyProblem& problem,
     }
     task.candidates.push_back(std::move(candidate));
   };
-  const std::vector<const Joint*> joints = detail::moving_joints(config, robot);
+  const std::vector<const Joint*> joints =
+      detail::moving_joints(detail::model_chains(config, robot), robot);
   for (const Joint* joint : joints) add(detail::kZero, joint->name, {joint->name});
   for (const ModelConfig& model : step.models) {
     const SensorEntry* entry = registry().sensor(model.type);

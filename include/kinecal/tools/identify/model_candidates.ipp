@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/parameters/joint_models.hpp"
 #include "kinecal/problem/sample_reading.ipp"
 #include "kinecal/samples/sample.hpp"
@@ -22,25 +24,40 @@ struct ModelCandidate {
   std::vector<std::string> parameters;
 };
 
-/// True if all samples say what a model needs, and its parameters have different effects in them: backlash needs a
-/// joint that came from both sides, five times at least.
-[[nodiscard]] inline bool has_effect(const AnyJointModel& model, const Robot& robot,
-                                     const Joint& joint, std::span<const Sample> samples) {
-  constexpr int kFewest = 5;
-  int other = 0;
-  std::optional<double> first;
-  try {
-    for (const Sample& sample : samples) {
-      SampleLoads loads(robot, sample);
-      const SampleReading reading(sample, joint.name, loads, false);
-      const double effect = model.effect(0, reading, {});
-      if (effect != 0.0 && !first) first = effect;
-      if (first && effect != 0.0 && effect != *first) ++other;
-    }
-  } catch (const SampleError&) {  // samples without joints are reported elsewhere
-    return false;
+/// A model of a joint, and whether samples say what it needs.
+struct ModelProbe {
+  int rank = 0;
+  const AnyJointModel* model = nullptr;
+  const Joint* joint = nullptr;
+  std::optional<double> effect = {};  ///< that of its first parameter in some sample
+  int others = 0;                     ///< samples in which that is another
+  bool is_unknown = false;            ///< a sample does not say it
+
+  /// True if the samples say it, and it differs: backlash needs a joint that came from both sides.
+  [[nodiscard]] bool is_candidate() const {
+    constexpr int kFewest = 5;
+    return !is_unknown && others >= kFewest;
   }
-  return other >= kFewest;
+};
+
+/// Asks each model, without a partner, for its effect in each sample.
+inline void ask_models(const Robot& robot, std::span<const Sample> samples,
+                       std::vector<ModelProbe>& probes) {
+  for (const Sample& sample : samples) {
+    SampleLoads loads(robot, sample);
+    for (ModelProbe& probe : probes) {
+      if (probe.is_unknown) continue;
+      try {
+        const SampleReading reading(sample, probe.joint->name, loads, false);
+        const double effect = probe.model->effect(0, reading, {});
+        if (effect == 0.0) continue;
+        if (!probe.effect) probe.effect = effect;
+        probe.others += effect != *probe.effect ? 1 : 0;
+      } catch (const SampleError&) {  // that joints are missing is reported elsewhere
+        probe.is_unknown = true;
+      }
+    }
+  }
 }
 
 /// True if all samples have the velocities of joints, and some moved.
@@ -58,46 +75,34 @@ struct ModelCandidate {
   return moved;
 }
 
-/// The chains from the base to the sensors.
-[[nodiscard]] inline std::vector<RuntimeChain> chains_to_sensors(const Config& config,
-                                                                 const Robot& robot) {
-  std::vector<RuntimeChain> chains;
-  for (const ModelConfig& model : config.steps.front().models) {
-    if (!robot.has_link(model.frame) || !robot.has_link(config.base_link)) continue;
-    chains.push_back(make_chain(robot, config.base_link, model.frame));
-  }
-  return chains;
-}
-
 /// The joints that move right before and after a joint in a chain.
 [[nodiscard]] inline std::set<std::string> neighbours_of(const std::string& joint,
-                                                         const std::vector<RuntimeChain>& chains) {
+                                                         const std::vector<ModelChain>& chains) {
   std::set<std::string> neighbours;
-  for (const RuntimeChain& chain : chains) {
-    std::vector<std::string> moving;
-    for (const ChainJoint& one : chain.joints) {
-      if (moves(one.type)) moving.push_back(one.drive.joint);
-    }
-    for (std::size_t i = 0; i < moving.size(); ++i) {
-      if (moving[i] != joint) continue;
-      if (i > 0) neighbours.insert(moving[i - 1]);
-      if (i + 1 < moving.size()) neighbours.insert(moving[i + 1]);
+  for (const ModelChain& of : chains) {
+    std::string before;  // the joint that moves before
+    for (const ChainJoint& one : of.chain.joints) {
+      if (!moves(one.type)) continue;
+      if (one.drive.joint == joint) neighbours.insert(before);
+      if (before == joint) neighbours.insert(one.drive.joint);
+      before = one.drive.joint;
     }
   }
   neighbours.erase(joint);
+  neighbours.erase("");
   return neighbours;
 }
 
 /// Links beyond a joint whose masses could pull at it, at least 0.15 m apart, and the last ones.
 [[nodiscard]] inline std::set<std::string> links_beyond(const Robot& robot,
                                                         const std::string& joint,
-                                                        const std::vector<RuntimeChain>& chains) {
+                                                        const std::vector<ModelChain>& chains) {
   constexpr double kApart = 0.15;  // metres
   std::set<std::string> links;
-  for (const RuntimeChain& chain : chains) {
+  for (const ModelChain& of : chains) {
     bool beyond = false;
     double way = 0.0;
-    for (const ChainJoint& one : chain.joints) {
+    for (const ChainJoint& one : of.chain.joints) {
       if (beyond) way += one.fixed.translation.norm();
       if (beyond && way > kApart && moves(one.type)) {
         links.insert(robot.joint(one.name).child);
@@ -105,7 +110,7 @@ struct ModelCandidate {
       }
       beyond |= one.drive.joint == joint && !one.reversed;
     }
-    if (beyond && way + chain.tail.translation.norm() > 0.0) links.insert(chain.tip);
+    if (beyond && way + of.chain.tail.translation.norm() > 0.0) links.insert(of.chain.tip);
   }
   return links;
 }
@@ -116,51 +121,53 @@ struct ModelCandidate {
                                                                   const Robot& robot,
                                                                   std::span<const Sample> samples) {
   std::vector<ModelCandidate> all;
-  const std::vector<RuntimeChain> chains = chains_to_sensors(config, robot);
-  std::vector<const Joint*> joints = moving_joints(config, robot);
-  const auto add_models = [&](const Joint& joint) {
+  const std::vector<ModelChain> chains = model_chains(config, robot);
+  const std::vector<const Joint*> moving = moving_joints(chains, robot);
+  const bool has_masses = !robot.weight().links.empty();
+  std::set<const Joint*> mimics;
+  for (const ModelChain& of : chains) {
+    for (const ChainJoint& joint : of.chain.joints) {
+      if (moves(joint.type) && joint.drive.joint != joint.name)
+        mimics.insert(&robot.joint(joint.name));
+    }
+  }
+  std::vector<const Joint*> joints = moving;
+  joints.insert(joints.end(), mimics.begin(), mimics.end());
+  const auto add = [&](int rank, const AnyJointModel& model, const Joint& joint,
+                       const std::string& partner) {
+    ModelCandidate& candidate = all.emplace_back(ModelCandidate{rank, {}});
+    for (const ParameterInfo& info : model.parameters()) {
+      const std::string name = parameter_name(joint.name, info.name);
+      candidate.parameters.push_back(partner.empty() ? name : name + "_" + partner);
+    }
+  };
+  std::vector<ModelProbe> probes;
+  for (const Joint* joint : joints) {
     int rank = kJointModel;
     for (const auto& model : joint_models()) {
       const int own = rank++;
-      if (!model->suits(joint.type, joint.mimic.has_value())) continue;
-      if (model->needs_masses() && robot.weight().links.empty()) continue;
-      std::vector<std::string> names;
-      for (const ParameterInfo& info : model->parameters()) {
-        names.push_back(parameter_name(joint.name, info.name));
+      if (!model->suits(joint->type, joint->mimic.has_value())) continue;
+      if (model->needs_masses() && !has_masses) continue;
+      if (model->partner() == ModelPartner::none) probes.push_back({own, model.get(), joint});
+      if (model->partner() == ModelPartner::link && !has_masses) {
+        for (const std::string& link : links_beyond(robot, joint->name, chains))
+          add(own, *model, *joint, link);
       }
-      if (model->partner() == ModelPartner::none) {
-        if (has_effect(*model, robot, joint, samples)) all.push_back({own, std::move(names)});
-      } else if (model->partner() == ModelPartner::link) {
-        if (!robot.weight().links.empty()) continue;
-        for (const std::string& link : links_beyond(robot, joint.name, chains)) {
-          ModelCandidate& of_link = all.emplace_back(ModelCandidate{own, names});
-          for (std::string& name : of_link.parameters) name += "_" + link;
-        }
-      } else if (model->partner() == ModelPartner::joint && !joint.mimic) {
-        for (const std::string& other : neighbours_of(joint.name, chains)) {
-          ModelCandidate& with_other = all.emplace_back(ModelCandidate{own, names});
-          for (std::string& name : with_other.parameters) name += "_" + other;
-        }
+      if (model->partner() == ModelPartner::joint && !joint->mimic) {
+        for (const std::string& other : neighbours_of(joint->name, chains))
+          add(own, *model, *joint, other);
       }
-    }
-  };
-  for (const Joint* joint : joints) add_models(*joint);
-  std::set<std::string> mimics;
-  for (const RuntimeChain& chain : chains) {
-    for (const ChainJoint& joint : chain.joints) {
-      if (!moves(joint.type) || joint.drive.joint == joint.name) continue;
-      if (mimics.insert(joint.name).second) add_models(robot.joint(joint.name));
     }
   }
-  if (!have_velocities(joints, samples)) return all;
-  for (const ModelConfig& model : config.steps.front().models) {
-    if (!robot.has_link(model.frame)) continue;
+  ask_models(robot, samples, probes);
+  for (const ModelProbe& probe : probes) {
+    if (probe.is_candidate()) add(probe.rank, *probe.model, *probe.joint, "");
+  }
+  if (!have_velocities(moving, samples)) return all;
+  for (const ModelChain& of : chains) {
     const auto moves_it = [](const ChainJoint& joint) { return moves(joint.type); };
-    const RuntimeChain chain = make_chain(robot, config.base_link, model.frame);
-    if (std::any_of(chain.joints.begin(), chain.joints.end(), moves_it)) {
-      const std::string prefix = model.param_name.empty() ? model.name : model.param_name;
-      all.push_back({kLagOfSensor, {parameter_name(prefix, kLag.name)}});
-    }
+    if (std::any_of(of.chain.joints.begin(), of.chain.joints.end(), moves_it))
+      all.push_back({kLagOfSensor, {lag_name(*of.model)}});
   }
   return all;
 }

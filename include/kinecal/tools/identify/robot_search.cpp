@@ -13,6 +13,7 @@
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/text/first_names.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/reading.hpp"
 
@@ -40,22 +41,12 @@ namespace {
   return of;
 }
 
-/// "a, b, c, d and 3 more"
-[[nodiscard]] std::string some_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 4;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) {
-    text += (i == 0 ? "" : ", ") + names[i];
-  }
-  return names.size() > kShown ? text + fmt::format(" and {} more", names.size() - kShown) : text;
-}
-
 /// What explains the same: first what no sample tells apart.
 [[nodiscard]] std::string same_explanations(const ReportedSearchStep& step) {
   std::string text;
   if (!step.inseparable.empty()) {
     text += fmt::format("no sample like these tells {} from {}: either is as good\n", step.freed,
-                        some_names(step.inseparable));
+                        first_names(step.inseparable));
   }
   std::vector<std::string> others;
   for (const std::string& name : step.alike) {
@@ -65,8 +56,8 @@ namespace {
     }
   }
   if (!others.empty()) {
-    text +=
-        fmt::format("in place of {}, these explain the same: {}\n", step.freed, some_names(others));
+    text += fmt::format("in place of {}, these explain the same: {}\n", step.freed,
+                        first_names(others));
   }
   return text;
 }
