@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <set>
 
@@ -165,6 +166,8 @@ class SimulatedArm {
                              : unit.ends_with("/Nm") ? 2e-5
                                                      : 0.004;
         truth_[p].value = random_.either_sign(least, unit == "1" ? 0.01 : 4.0 * least);
+        const auto of = joint_model_parameter(robot_, truth_[p].name);
+        if (of && of->model->is_never_negative()) truth_[p].value = std::abs(truth_[p].value);
       }
     }
     measure(samples_);
