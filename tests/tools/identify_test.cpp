@@ -6,26 +6,19 @@
 #include <cstdio>
 #include <set>
 
-#include "kinecal/config/assemble.hpp"
 #include "kinecal/config/config_to_yaml.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
-#include "kinecal/samples/joint_moves.hpp"
-#include "kinecal/solve/statistics.hpp"
-#include "kinecal/study/exact_samples.hpp"
-#include "kinecal/study/seeded_random.hpp"
 #include "kinecal/tools/identify/another_robot.hpp"
 #include "kinecal/tools/identify/identified_config.hpp"
 #include "kinecal/tools/identify/robot_search.hpp"
 #include "kinecal/tools/identify/would_help.hpp"
-#include "kinecal/tools/init/answers_from_samples.hpp"
-#include "kinecal/tools/init/initial_config.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
-#include "kinecal/trust/observability.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"
 #include "support/repetitions.hpp"
+#include "support/spoiled_robot.hpp"
 
 namespace kinecal {
 namespace {
