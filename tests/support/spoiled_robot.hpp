@@ -49,7 +49,7 @@ inline Calibration assembled(const Config& config, const Robot& robot,
 }
 
 /// What is found in samples.
-struct Found {
+struct FoundErrors {
   IdentifyTask task;
   Identified identified;
   Config config;  ///< that frees it
@@ -63,9 +63,9 @@ struct Found {
   }
 };
 
-inline Found find_errors(const Config& config, const Robot& robot, std::span<const Sample> samples,
-                         bool geometry_only = false) {
-  Found found;
+inline FoundErrors find_errors(const Config& config, const Robot& robot,
+                               std::span<const Sample> samples, bool geometry_only = false) {
+  FoundErrors found;
   Calibration calibration = assembled(with_all_candidates(config, robot, samples), robot, samples);
   const AnyProblem& problem = *calibration.steps.front().problem;
   found.task = identify_task(config, problem, samples, geometry_only);
@@ -78,7 +78,7 @@ inline Found find_errors(const Config& config, const Robot& robot, std::span<con
 inline double error_elsewhere(const Config& config, const Robot& robot,
                               std::span<const Sample> fitted, std::span<const Sample> others) {
   const CalibrationResult result = calibrate(assembled(config, robot, fitted));
-  EXPECT_TRUE(result.converged);
+  EXPECT_TRUE(result.converged) << result.termination;
   const Calibration other = assembled(config, robot, others);
   const Eigen::VectorXd values = result.table.values();
   const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
@@ -138,7 +138,9 @@ struct SeenPoses {
     SeenPoses seen;
     seen.config = parse_config(plan.config, "calibrate.yaml", diagnostics);
     diagnostics.throw_if_errors();
-    for (BlockConfig& block : seen.config.steps.front().error_blocks) block.sigma.reset();
+    std::vector<BlockConfig>& blocks = seen.config.steps.front().error_blocks;
+    blocks.resize(1);  // without priors
+    blocks.front().sigma.reset();
     std::vector<CapturePose> poses;
     for (JointTarget& target : poses_of(plan)) {
       poses.push_back({std::move(target.names), std::move(target.positions), {}});
@@ -189,16 +191,18 @@ class SpoiledRobot {
         if (of && of->model->is_never_negative()) truth_[p].value = std::abs(truth_[p].value);
       }
     }
+    std::set<std::string> names;
+    for (const int k : wrong) names.insert(task_.candidates[static_cast<std::size_t>(k)].name);
     measure(samples_);
     measure(others_);
-    return {wrong.begin(), wrong.end()};
+    return numbers_of(names);
   }
 
   [[nodiscard]] const Robot& robot() const { return robot_; }
   [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
   [[nodiscard]] const Config& config() const { return config_; }
   [[nodiscard]] const IdentifyTask& task() const { return task_; }
-  [[nodiscard]] Found found() const { return find_errors(config_, robot_, samples_); }
+  [[nodiscard]] FoundErrors found() const { return find_errors(config_, robot_, samples_); }
   /// Error on other poses, of what was found and of these candidates, in the unit of the error block.
   [[nodiscard]] double error(const Config& config) const {
     return error_elsewhere(config, robot_, samples_, others_);
@@ -272,6 +276,24 @@ class SpoiledRobot {
       truth_[p].value = random_.either_sign(0.2 * size, size);
     }
     for (const Parameter& p : known) truth_[p.name].value = p.value;
+  }
+
+  /// The numbers of candidates in the task of what was measured: encoder noise can make others.
+  std::vector<int> numbers_of(const std::set<std::string>& names) {
+    wide_ = with_all_candidates(config_, robot_, samples_);
+    const Calibration calibration = assembled(wide_, robot_, samples_);
+    task_ = identify_task(config_, *calibration.steps.front().problem, samples_);
+    ParameterTable table = calibration.table;
+    for (int i = 0; i < table.size(); ++i) {
+      const int known = truth_.find(table[i].name);
+      if (known >= 0) table[i].value = truth_[known].value;
+    }
+    truth_ = table;
+    std::vector<int> numbers;
+    for (std::size_t k = 0; k < task_.candidates.size(); ++k) {
+      if (names.contains(task_.candidates[k].name)) numbers.push_back(static_cast<int>(k));
+    }
+    return numbers;
   }
 
   void measure(std::vector<Sample>& samples) {

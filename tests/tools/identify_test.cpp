@@ -29,7 +29,7 @@ using testing::IsEmpty;
 using test::assembled;
 using test::error_elsewhere;
 using test::find_errors;
-using test::Found;
+using test::FoundErrors;
 using test::SpoiledRobot;
 using test::tracker_config;
 
@@ -42,10 +42,10 @@ TEST(Identify, FindsMoreInTheUr5ThanItsWholeGeometry) {
              random = read_samples((data / "random.yaml").string(), diagnostics);
   const Config config = tracker_config(robot, grid);
   // 25 well-chosen parameters of its geometry reach 0.1042 mm on these 20 poses, offsets 0.38.
-  const Found geometry = find_errors(config, robot, grid, true);
+  const FoundErrors geometry = find_errors(config, robot, grid, true);
   EXPECT_LT(1e3 * error_elsewhere(geometry.config, robot, grid, random), 0.107);
   EXPECT_LE(geometry.identified.chosen.size(), 25 - 9);
-  const Found models = find_errors(config, robot, grid);
+  const FoundErrors models = find_errors(config, robot, grid);
   EXPECT_LT(1e3 * error_elsewhere(models.config, robot, grid, random), 0.096);
 }
 
@@ -56,7 +56,7 @@ TEST(Identify, FindsGeometryOfThePandaThatHoldsElsewhere) {
   const Robot robot = read_urdf((data / "panda.urdf").string());
   const auto samples = read_samples((data / "panda_6/front.yaml").string(), diagnostics);
   const Config config = read_config((data / "panda_6/minimal.yaml").string(), diagnostics);
-  const Found found = find_errors(config, robot, samples, true);
+  const FoundErrors found = find_errors(config, robot, samples, true);
   EXPECT_LT(found.identified.steps.back().fitted, 0.22e-3)
       << "0.194 mm with 30 parameters chosen by hand";
 }
@@ -67,7 +67,7 @@ TEST(Identify, FindsTheErrorsOfTheSimulatedFetch) {
   Diagnostics diagnostics;
   const Robot robot = read_urdf((data / "fetch_arm_head.urdf").string());
   const auto samples = read_samples((data / "samples.yaml").string(), diagnostics);
-  const Found found = find_errors(tracker_config(robot, samples), robot, samples);
+  const FoundErrors found = find_errors(tracker_config(robot, samples), robot, samples);
   EXPECT_THAT(found.names(), testing::IsSupersetOf(
                                  {"frame of head_pan_joint", "shoulder_lift_joint",
                                   "upperarm_roll_joint", "elbow_flex_joint", "forearm_roll_joint",
@@ -83,7 +83,7 @@ struct Counts {
 
   /// Adds a robot.
   void add(const SpoiledRobot& arm, const std::vector<int>& spoiled) {
-    const Found found = arm.found();
+    const FoundErrors found = arm.found();
     ++robots;
     candidates += static_cast<int>(found.task.candidates.size());
     wrong += static_cast<int>(spoiled.size());
@@ -157,7 +157,7 @@ TEST(Identify, NamesWhatIsWrong) {
 TEST(Identify, FindsAZeroThatIsAQuarterTurnOff) {
   SpoiledRobot arm(3);
   arm.spoil(0, "wrist_2_joint");
-  const Found found = arm.found();
+  const FoundErrors found = arm.found();
   ASSERT_EQ(found.identified.turned.size(), 1U);
   const auto& [candidate, turn] = found.identified.turned.front();
   EXPECT_EQ(found.task.candidates[static_cast<std::size_t>(candidate)].name, "wrist_2_joint");
@@ -182,7 +182,7 @@ TEST(Identify, NamesWhatNoSampleTellsApart) {
 TEST(Identify, HasStandardErrorsAndWhatWasTriedAndNotFreed) {
   SpoiledRobot arm(12);
   arm.spoil(0, "wrist_2_joint", 0.02);
-  const Found found = arm.found();
+  const FoundErrors found = arm.found();
   const std::vector<IdentifyStep>& steps = found.identified.steps;
   ASSERT_EQ(steps.size(), 2U);
   EXPECT_EQ(steps[0].parameters + 1, steps[1].parameters);
@@ -263,7 +263,7 @@ TEST(WouldHelp, SaysNothingOfSamplesOfOnePose) {
 TEST(Identify, WritesAConfigurationThatReadsAsTheSame) {
   SpoiledRobot arm(7);
   arm.spoil(3);
-  const Found found = arm.found();
+  const FoundErrors found = arm.found();
   const std::string text = config_to_yaml(found.config, "title", {{"smr_x", "why"}});
   EXPECT_THAT(text, testing::HasSubstr("yaw: false}  # x: why\n"));
   Diagnostics diagnostics;

@@ -141,7 +141,8 @@ double ParameterSearch::certainty(const Eigen::VectorXd& before,
   const Eigen::VectorXd fall = before - after;
   const double mean = fall.mean(), n = static_cast<double>(fall.size());
   const double error = std::sqrt((fall.array() - mean).square().sum() / std::max(1.0, n - 1.0) / n);
-  return error > 0.0 ? mean / error : 0.0;
+  constexpr double kRounding = 1e-9;  // of fits that are the same
+  return error > 0.0 && std::abs(mean) > kRounding * before.mean() ? mean / error : 0.0;
 }
 
 double ParameterSearch::certainty_of(const std::vector<int>& with,

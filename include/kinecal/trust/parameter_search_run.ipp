@@ -90,11 +90,15 @@ int ParameterSearch::simplest(const std::vector<int>& base, const Candidates& ca
 std::vector<int> ParameterSearch::like(const Whole& without, const Candidates& candidates,
                                        const std::vector<int>& chosen, int k) const {
   constexpr double kAlike = 0.9;  // share of the fall that another one explains, too
+  const auto with = [&](int c) {
+    return detail::joined(without.columns, candidates[static_cast<std::size_t>(c)].columns);
+  };
   const Gain own = gain_of(without, candidates[static_cast<std::size_t>(k)], k);
   std::vector<int> others;
   for (const Gain& gain : gains(without, candidates, chosen)) {
     if (gain.squares < kAlike * own.squares) break;
-    others.push_back(gain.candidate);
+    // Where little noise is left, a tenth of the fall can be certain, too.
+    if (certainty_of(with(k), with(gain.candidate)) <= kSure) others.push_back(gain.candidate);
   }
   return others;
 }
