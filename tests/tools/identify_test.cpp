@@ -76,10 +76,11 @@ TEST(Identify, FindsTheErrorsOfTheSimulatedFetch) {
   EXPECT_LT(found.identified.steps.back().fitted, 1.76e-3);
 }
 
-/// What became of the errors of robots, and of candidates that were none.
+/// What became of the errors of robots: named; named by what looks alike; not to be told from unknown
+/// poses; too small to matter elsewhere; missed; and of candidates that were none.
 struct Counts {
-  int robots = 0, candidates = 0, wrong = 0, exact = 0, alike = 0, hidden = 0, missed = 0,
-      invented = 0, worse = 0;
+  int robots = 0, candidates = 0, wrong = 0, exact = 0, alike = 0, hidden = 0, small = 0,
+      missed = 0, invented = 0, worse = 0;
 
   /// Adds a robot.
   void add(const SpoiledRobot& arm, const std::vector<int>& spoiled) {
@@ -88,6 +89,17 @@ struct Counts {
     candidates += static_cast<int>(found.task.candidates.size());
     wrong += static_cast<int>(spoiled.size());
     std::set<int> left(found.identified.chosen.begin(), found.identified.chosen.end());
+    std::set<int> seen(spoiled.begin(), spoiled.end());
+    std::erase_if(seen, [&](int k) { return arm.is_in_unknown_poses(k); });
+    const auto error_of = [&](const std::set<int>& free) {
+      return arm.error(arm.config_of({free.begin(), free.end()}));
+    };
+    const double best = error_of(seen);  // of the truth's own set
+    const auto is_small = [&](int k) {   // it makes no difference elsewhere
+      std::set<int> without = seen;
+      without.erase(k);
+      return error_of(without) < 1.01 * best;
+    };
     for (const int k : spoiled) {
       if (left.erase(k) > 0) {
         ++exact;
@@ -99,24 +111,26 @@ struct Counts {
       };
       const auto& steps = found.identified.steps;
       const auto other = std::find_if(steps.begin(), steps.end(), as_well);
-      ++(other != steps.end() ? alike : arm.is_in_unknown_poses(k) ? hidden : missed);
       if (other != steps.end()) left.erase(other->candidate);
+      ++(other != steps.end() ? alike : !seen.contains(k) ? hidden : is_small(k) ? small : missed);
     }
     invented += static_cast<int>(left.size());
-    if (arm.error(found.config) > 1.05 * arm.error(arm.config_of(spoiled))) ++worse;
+    if (arm.error(found.config) > 1.05 * best) ++worse;
   }
   void add(const Counts& other) {
     for (const auto count :
          {&Counts::robots, &Counts::candidates, &Counts::wrong, &Counts::exact, &Counts::alike,
-          &Counts::hidden, &Counts::missed, &Counts::invented, &Counts::worse}) {
+          &Counts::hidden, &Counts::small, &Counts::missed, &Counts::invented, &Counts::worse}) {
       this->*count += other.*count;
     }
   }
   void print(const std::string& of) const {
     std::printf(
         "%s: %d robots, %d errors, %d candidates: %d named, %d by what looks alike, %d in the "
-        "unknown poses, %d missed, %d invented; %d robots are worse elsewhere\n",
-        of.c_str(), robots, wrong, candidates, exact, alike, hidden, missed, invented, worse);
+        "unknown poses, %d too small to matter, %d missed, %d invented; %d robots are worse "
+        "elsewhere\n",
+        of.c_str(), robots, wrong, candidates, exact, alike, hidden, small, missed, invented,
+        worse);
   }
 };
 
@@ -150,8 +164,9 @@ TEST(Identify, NamesWhatIsWrong) {
     all.add(of_kind);
   }
   all.print("all");
+  EXPECT_LE(all.missed, 0.1 * all.wrong);
   EXPECT_LE(all.invented, 0.02 * all.candidates);
-  EXPECT_LE(all.worse, 0.05 * all.robots);
+  EXPECT_LE(all.worse, 0.01 * all.robots);
 }
 
 TEST(Identify, FindsAZeroThatIsAQuarterTurnOff) {
