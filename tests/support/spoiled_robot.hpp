@@ -74,11 +74,11 @@ inline FoundErrors find_errors(const Config& config, const Robot& robot,
   return found;
 }
 
-/// Root of the mean squared distance in samples, by a configuration that is calibrated with others.
+/// Root of the mean squared distance in samples, by a configuration that is calibrated with others: of
+/// parameters that nothing tells apart, too.
 inline double error_elsewhere(const Config& config, const Robot& robot,
                               std::span<const Sample> fitted, std::span<const Sample> others) {
   const CalibrationResult result = calibrate(assembled(config, robot, fitted));
-  EXPECT_TRUE(result.converged) << result.termination;
   const Calibration other = assembled(config, robot, others);
   const Eigen::VectorXd values = result.table.values();
   const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));

@@ -85,6 +85,7 @@ struct Counts {
   /// Adds a robot.
   void add(const SpoiledRobot& arm, const std::vector<int>& spoiled) {
     const FoundErrors found = arm.found();
+    EXPECT_TRUE(found.identified.result.converged);
     ++robots;
     candidates += static_cast<int>(found.task.candidates.size());
     wrong += static_cast<int>(spoiled.size());

@@ -89,7 +89,8 @@ int ParameterSearch::simplest(const std::vector<int>& base, const Candidates& ca
 
 std::vector<int> ParameterSearch::like(const Whole& without, const Candidates& candidates,
                                        const std::vector<int>& chosen, int k) const {
-  constexpr double kAlike = 0.9;  // share of the fall that another one explains, too
+  constexpr double kAlike = 0.9;    // share of the fall that another one explains, too
+  constexpr double kCertain = 3.0;  // standard errors
   const auto with = [&](int c) {
     return detail::joined(without.columns, candidates[static_cast<std::size_t>(c)].columns);
   };
@@ -98,7 +99,7 @@ std::vector<int> ParameterSearch::like(const Whole& without, const Candidates& c
   for (const Gain& gain : gains(without, candidates, chosen)) {
     if (gain.squares < kAlike * own.squares) break;
     // Where little noise is left, a tenth of the fall can be certain, too.
-    if (certainty_of(with(k), with(gain.candidate)) <= kSure) others.push_back(gain.candidate);
+    if (certainty_of(with(k), with(gain.candidate)) <= kCertain) others.push_back(gain.candidate);
   }
   return others;
 }
