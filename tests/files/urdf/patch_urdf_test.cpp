@@ -363,7 +363,16 @@ TEST(PatchUrdfRos2Control, IsChosenForJointsThatHaveAnOffsetThere) {
   };
   EXPECT_FALSE(into_rising(with));
   EXPECT_TRUE(into_rising(without));
-  EXPECT_FALSE(into_rising(driven_joint("", "<calibration rising='0'/>"))) << "it is read already";
+  const std::string calibrated = driven_joint("", "<calibration rising='0'/>");
+  EXPECT_FALSE(into_rising(calibrated)) << "it is read already";
+  const auto places = [&](const std::string& text) {
+    return offset_places(text, "arm.urdf", parse_urdf(text, "arm.urdf"), offset);
+  };
+  EXPECT_THAT(places(with).ros2_control, ElementsAre("j"));
+  EXPECT_THAT(places(with).rising, ElementsAre());
+  EXPECT_THAT(places(without).rising, ElementsAre("j"));
+  EXPECT_FALSE(places(without).has_calibration);
+  EXPECT_TRUE(places(calibrated).has_calibration);
 }
 
 TEST(PatchUrdfRos2Control, AnOffsetInTicksIsLeftToItsDriver) {

@@ -78,18 +78,27 @@ std::string patch_urdf(const std::string& text, const std::string& name_for_mess
   return detail::apply_edits(text, std::move(edits));
 }
 
+OffsetPlaces offset_places(const std::string& text, const std::string& name_for_messages,
+                           const Robot& robot, const std::vector<JointPatch>& patches) {
+  const detail::UrdfText source(text, name_for_messages);
+  OffsetPlaces places;
+  const auto joints = source.robot().children("joint");
+  places.has_calibration = std::any_of(joints.begin(), joints.end(), [](pugi::xml_node joint) {
+    return joint.child("calibration");
+  });
+  for (const JointPatch& patch : patches) {
+    if (patch.offset == 0.0) continue;
+    const OffsetStyle style =
+        detail::decided_style(source, robot.joint(patch.joint), OffsetStyle::as_read);
+    (style == OffsetStyle::rising ? places.rising : places.ros2_control).push_back(patch.joint);
+  }
+  return places;
+}
+
 bool goes_into_rising(const std::string& text, const std::string& name_for_messages,
                       const Robot& robot, const std::vector<JointPatch>& patches) {
-  const detail::UrdfText source(text, name_for_messages);
-  const auto joints = source.robot().children("joint");
-  if (std::any_of(joints.begin(), joints.end(),
-                  [](pugi::xml_node joint) { return joint.child("calibration"); })) {
-    return false;
-  }
-  return std::any_of(patches.begin(), patches.end(), [&](const JointPatch& patch) {
-    return patch.offset != 0.0 &&
-           !detail::has_ros2_control_offset(source, robot.joint(patch.joint));
-  });
+  const OffsetPlaces places = offset_places(text, name_for_messages, robot, patches);
+  return !places.has_calibration && !places.rising.empty();
 }
 
 std::map<std::string, double> ros2_control_offsets(const std::string& text,

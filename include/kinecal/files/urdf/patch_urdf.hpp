@@ -54,6 +54,18 @@ enum class OffsetStyle {
                                      const Robot& robot, const std::vector<JointPatch>& patches,
                                      OffsetStyle style);
 
+/// Where OffsetStyle::as_read writes the offsets of joints.
+struct OffsetPlaces {
+  std::vector<std::string> ros2_control;  ///< joints whose offset goes to <param name="offset">
+  std::vector<std::string> rising;        ///< joints whose offset goes to <calibration rising>
+  bool has_calibration = false;           ///< the URDF has <calibration>: a program reads it
+};
+
+/// @param text  the URDF, like the other arguments as patch_urdf() takes them
+[[nodiscard]] OffsetPlaces offset_places(const std::string& text,
+                                         const std::string& name_for_messages, const Robot& robot,
+                                         const std::vector<JointPatch>& patches);
+
 /// True if OffsetStyle::as_read writes the first <calibration rising> of a URDF: its programs may not read it.
 /// @param text  the URDF, like the other arguments as patch_urdf() takes them
 [[nodiscard]] bool goes_into_rising(const std::string& text, const std::string& name_for_messages,
