@@ -110,8 +110,8 @@ void add_robot_files(CLI::App& command, RobotFileOptions& files) {
       ->capture_default_str();
   command
       .add_option("--xacro", files.xacro,
-                  "the xacro file that the URDF was made of: numbers that are literals there are "
-                  "patched, others are named with their lines")
+                  "the xacro file that the URDF was made of: numbers that are literals there or in "
+                  "files that it includes are patched, others are named with their lines")
       ->type_name("FILE");
 }
 
