@@ -140,6 +140,19 @@ TEST(PatchXacro, AnotherNumberThanInTheUrdfIsNamed) {
               ElementsAre(HasSubstr("xyz=\"0 0 0.2\" is not the number in the URDF")));
 }
 
+TEST(PatchXacro, AMimicIsPatchedLikeOtherNumbers) {
+  const std::string urdf =
+      "<robot name='r'><link name='a'/><link name='b'/><link name='c'/>"
+      "<joint name='j' type='continuous'><parent link='a'/><child link='b'/></joint>"
+      "<joint name='k' type='continuous'><parent link='b'/><child link='c'/>"
+      "<mimic joint='j' multiplier='2'/></joint></robot>";
+  const std::string after = patch_urdf(urdf, "r.urdf", parse_urdf(urdf, "r.urdf"),
+                                       {{"k", 0.0, {}, 0.5, 0.25}}, OffsetStyle::rising);
+  const XacroPatch patch = patch_xacro({{"r.xacro", urdf}}, urdf, after);
+  EXPECT_EQ(patch.files[0].text, after);
+  EXPECT_THAT(patch.files[0].text, HasSubstr("<mimic joint='j' multiplier='2.5' offset='0.25'/>"));
+}
+
 constexpr const char* kTop = "<robot name='arm' xmlns:xacro='http://www.ros.org/wiki/xacro'/>";
 
 TEST(PatchXacro, AJointOfNoFileIsNamed) {

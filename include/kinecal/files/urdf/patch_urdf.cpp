@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kinecal/files/urdf/joint_changes.ipp"
+#include "kinecal/files/urdf/mimic_changes.ipp"
 #include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
@@ -29,11 +30,16 @@ void check_patch(const UrdfText& source, const Robot& robot, const JointPatch& p
   if (!robot.has_joint(name)) {
     fail("joint '" + name + "' is not a joint of robot '" + robot.name() + "'");
   }
-  const bool finite = std::isfinite(patch.offset) && patch.correction.translation.allFinite() &&
+  const bool finite = std::isfinite(patch.offset) && std::isfinite(patch.mimic_multiplier) &&
+                      std::isfinite(patch.mimic_offset) &&
+                      patch.correction.translation.allFinite() &&
                       patch.correction.rotation.allFinite();
   if (!finite) fail("the calibration of joint '" + name + "' is not finite");
-  if (patch.offset == 0.0) return;
   const Joint& joint = robot.joint(name);
+  if (!joint.mimic && (patch.mimic_multiplier != 0.0 || patch.mimic_offset != 0.0)) {
+    fail("joint '" + name + "' does not mimic another: it has no <mimic> to correct");
+  }
+  if (patch.offset == 0.0) return;
   if (!moves(joint.type)) {
     fail("joint '" + name + "' is " + std::string(to_string(joint.type)) +
          ": it has no position to add an offset to");
@@ -68,10 +74,16 @@ std::string patch_urdf(const std::string& text, const std::string& name_for_mess
     return detail::decided_style(source, joint, style);
   };
   std::vector<detail::TextEdit> edits;
-  for (const auto& [name, change] : detail::urdf_joint_changes(robot, patches, style_of)) {
+  const auto mimics = detail::calibrated_mimics(robot, patches, style_of);
+  auto changes = detail::urdf_joint_changes(robot, patches, style_of);
+  for (const auto& [name, mimic] : mimics) changes[name];  // with it, or with it alone
+  for (const auto& [name, change] : changes) {
     const pugi::xml_node joint = source.joint(name);
     if (!joint) throw InputError(name_for_messages + ": no joint '" + name + "'");
     detail::edit_joint(source, joint, change, edits);
+    if (const auto found = mimics.find(name); found != mimics.end()) {
+      detail::UrdfJointEditor{source, joint, edits}.set_mimic(found->second);
+    }
     if (change.ros2_control == 0.0) continue;
     detail::add_ros2_control_offset(source, robot.joint(name), change.ros2_control, edits);
   }
