@@ -8,6 +8,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -72,6 +73,7 @@ struct MimicCalibration {
 
 /// The new <mimic> of joints that have errors of their own, or mimic one that has.
 /// @param style_of  where the offset of a joint goes
+/// @throws InputError  if a number cannot be written
 template <class StyleOf>
 [[nodiscard]] std::map<std::string, Mimic> calibrated_mimics(const Robot& robot,
                                                              const std::vector<JointPatch>& patches,
@@ -79,7 +81,13 @@ template <class StyleOf>
   const MimicCalibration<StyleOf> calibration{robot, patches, style_of};
   std::map<std::string, Mimic> changed;
   for (const Joint& joint : robot.joints()) {
-    if (calibration.is_changed(joint)) changed.emplace(joint.name, calibration.mimic_of(joint));
+    if (!calibration.is_changed(joint)) continue;
+    const Mimic mimic = calibration.mimic_of(joint);
+    if (!std::isfinite(mimic.multiplier) || !std::isfinite(mimic.offset)) {
+      throw InputError("joint '" + joint.name +
+                       "': the calibrated numbers of <mimic> are not finite");
+    }
+    changed.emplace(joint.name, mimic);
   }
   return changed;
 }
