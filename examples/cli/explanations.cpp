@@ -153,19 +153,26 @@ DecidingPoses deciding_poses(const StudyInput& input, const PoseChoice& choice,
   found.decide = fewest.has_value();
   found.chosen = fewest ? *fewest : sets.first(sets.most());
   found.correlation = sets.correlation(found.chosen);
-  TextTable table({choice.have.empty() ? "poses" : "more poses", "selected", "random"}, 0);
+  const std::string &a = input.explanations[0].front(), &b = input.explanations[1].front();
+  TextTable table({choice.have.empty() ? "poses" : "more poses", "correlation", "random", a, b}, 0);
   std::set<int> counts = {3, 5, 8, 12, 20, 30, 50, 100};
   if (!found.chosen.empty()) counts.insert(static_cast<int>(found.chosen.size()));
   for (const int count : counts) {
     if (count > sets.most()) break;
     const bool is_found = count == static_cast<int>(found.chosen.size());
-    const double selected = is_found ? found.correlation : sets.correlation(sets.first(count));
-    table.add(
-        {std::to_string(count), fmt::format("{:.3f}", selected),
-         fmt::format("{:.3f}",
-                     known_by_random(input, choice, static_cast<std::size_t>(count)).correlation)});
+    const KnownExplanations known =
+        known_by(input, choice, is_found ? found.chosen : sets.first(count));
+    const KnownExplanations random =
+        known_by_random(input, choice, static_cast<std::size_t>(count));
+    const auto deviation = [&](const std::string& name, std::size_t at) {
+      return deviation_text(known.deviations[at], input.calibration.table[name].unit);
+    };
+    table.add({std::to_string(count), fmt::format("{:.3f}", known.correlation),
+               fmt::format("{:.3f}", random.correlation), deviation(a, 0),
+               deviation(b, input.explanations[0].size())});
   }
-  found.curve = "Correlation by number of poses\n" + table.str();
+  found.curve =
+      "By number of poses; random: the correlation of as many random ones\n" + table.str();
   return found;
 }
 

@@ -338,7 +338,7 @@ int plan_between(const PlanOptions& options) {
   const DecidingPoses found = deciding_poses(*input, choice, line->meter());
   const std::vector<int> order = short_order(choice, found.chosen);
   const std::string details =
-      order.empty() ? std::string() : explanations_text(*input, choice, found.chosen) + "\n";
+      order.empty() ? std::string() : explanations_text(*input, choice, found.chosen);
   line.reset();
   const std::string names =
       fmt::format("'{}' and '{}'", input->explanations[0].front(), input->explanations[1].front());

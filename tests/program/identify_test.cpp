@@ -170,7 +170,7 @@ TEST_F(IdentifyProgram, PlansHowManyPosesDecideBetweenTwoExplanations) {
                     none = std::string::npos;
   if (planned.out.find("no more poses are needed") == none) {
     ASSERT_NE(end, none) << planned.out;
-    EXPECT_THAT(planned.out, HasSubstr("Correlation by number of poses"));
+    EXPECT_THAT(planned.out, HasSubstr("By number of poses; random: "));
     EXPECT_TRUE(fs::exists(folder_ / "poses.yaml"));
   }
   EXPECT_THAT(kinecal(call + "elbow_joint_z,wrist_1_joint_z --candidates 50").err,
