@@ -86,6 +86,13 @@ TEST_F(FileSet, OfSeveralFoldersIsWrittenWholeOrNotAtAll) {
   EXPECT_THROW(write_file_sets({{a, {{"x", "4"}}}, {b, {{"y", "5"}, {"y2", "6"}}}}), OutputError);
   EXPECT_EQ(content(a / "x") + content(b / "y"), "12");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(a), {}), 2) << "nothing else is left";
+  const std::string no_room_for_a_second_name(250, 'n');  // which it has while it is replaced
+  write_file_sets({{b, {{no_room_for_a_second_name, "7"}}}});
+  EXPECT_THROW(
+      write_file_sets({{a, {{"x", "8"}, {"new", "9"}}}, {b, {{no_room_for_a_second_name, "10"}}}}),
+      OutputError);
+  EXPECT_EQ(content(a / "x") + content(b / no_room_for_a_second_name), "17") << "a is put back";
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(a), {}), 2);
 }
 
 TEST_F(FileSet, WritesNothingWhenANameCannotBeUsed) {
