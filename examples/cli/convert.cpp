@@ -69,7 +69,7 @@ Content read_bag_content(const std::string& input, Diagnostics& diagnostics) {
                         fmt::format("topic '{}' ({}) is left out: YAML holds only {}", topic.name,
                                     topic.type, has_samples ? "samples" : "poses"));
   }
-  if (has_samples) return {read_recording(input, diagnostics).samples, {}};
+  if (has_samples) return {read_as_recorded(input, diagnostics).samples, {}};
   return {{}, read_bag_poses(input, diagnostics)};
 }
 

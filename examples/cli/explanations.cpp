@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
@@ -95,7 +98,83 @@ std::string deviation_text(double deviation, const std::string& unit) {
   return std::isfinite(deviation) ? "+- " + reading(deviation, unit) : "not determined";
 }
 
+/// Sets of poses by their number: own ones while a search is short, else the first of a large set.
+class DecidingSets {
+ public:
+  DecidingSets(const StudyInput& input, const PoseChoice& choice, ProgressMeter meter)
+      : input_(input), choice_(choice), meter_(std::move(meter)) {
+    constexpr int kMost = 100;
+    largest_ = selected(std::min(kMost, static_cast<int>(choice.candidates.information.size())));
+  }
+
+  [[nodiscard]] int most() const { return static_cast<int>(largest_.size()); }
+
+  [[nodiscard]] std::vector<int> first(int count) const {
+    return {largest_.begin(), largest_.begin() + count};
+  }
+  [[nodiscard]] double correlation(const std::vector<int>& chosen) const {
+    if (chosen.empty() && choice_.have.empty()) return 1.0;
+    return known_by(input_, choice_, chosen).correlation;
+  }
+
+  /// The smallest set below the limit; nullopt if there is none.
+  [[nodiscard]] std::optional<std::vector<int>> fewest(double limit) const {
+    int count = 0;
+    while (count <= most() && correlation(first(count)) >= limit) ++count;
+    if (count > most()) return std::nullopt;
+    std::vector<int> best = first(count);
+    while (!best.empty()) {
+      std::vector<int> fewer = selected(static_cast<int>(best.size()) - 1);
+      if (correlation(fewer) >= limit) break;
+      best = std::move(fewer);
+    }
+    return best;
+  }
+
+ private:
+  [[nodiscard]] std::vector<int> selected(int count) const {
+    if (count == 0) return {};
+    return kinecal::select_poses(choice_.candidates, {.count = count, .meter = meter_}).chosen;
+  }
+
+  const StudyInput& input_;
+  const PoseChoice& choice_;
+  ProgressMeter meter_;
+  std::vector<int> largest_;  ///< the most useful first
+};
+
 }  // namespace
+
+DecidingPoses deciding_poses(const StudyInput& input, const PoseChoice& choice,
+                             const ProgressMeter& meter) {
+  const DecidingSets sets(input, choice, meter);
+  DecidingPoses found;
+  const auto fewest = sets.fewest(kAlike);
+  found.decide = fewest.has_value();
+  found.chosen = fewest ? *fewest : sets.first(sets.most());
+  found.correlation = sets.correlation(found.chosen);
+  const std::string &a = input.explanations[0].front(), &b = input.explanations[1].front();
+  TextTable table({choice.have.empty() ? "poses" : "more poses", "correlation", "random", a, b}, 0);
+  std::set<int> counts = {3, 5, 8, 12, 20, 30, 50, 100};
+  if (!found.chosen.empty()) counts.insert(static_cast<int>(found.chosen.size()));
+  for (const int count : counts) {
+    if (count > sets.most()) break;
+    const bool is_found = count == static_cast<int>(found.chosen.size());
+    const KnownExplanations known =
+        known_by(input, choice, is_found ? found.chosen : sets.first(count));
+    const KnownExplanations random =
+        known_by_random(input, choice, static_cast<std::size_t>(count));
+    const auto deviation = [&](const std::string& name, std::size_t at) {
+      return deviation_text(known.deviations[at], input.calibration.table[name].unit);
+    };
+    table.add({std::to_string(count), fmt::format("{:.3f}", known.correlation),
+               fmt::format("{:.3f}", random.correlation), deviation(a, 0),
+               deviation(b, input.explanations[0].size())});
+  }
+  found.curve =
+      "By number of poses; random: the correlation of as many random ones\n" + table.str();
+  return found;
+}
 
 void choose_between(const StudyInput& input, PoseChoice& choice) {
   std::vector<int> columns = columns_of(input, 0);

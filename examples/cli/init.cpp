@@ -1,6 +1,6 @@
 // kinecal init: writes a first configuration from a URDF and a few answers.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -9,10 +9,12 @@
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "kinecal/config/read_config.hpp"
 #include "kinecal/files/csv/read_csv_samples.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/results/standard_output.hpp"
 #include "kinecal/files/text_file.hpp"
+#include "kinecal/files/urdf/patch_urdf.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/shell_word.hpp"
@@ -366,6 +368,36 @@ void write_capture(const Robot& robot, const InitAnswers& answers, const InitOpt
   say("wrote {}\n  fill in what is zero: its sizes decide the scale of the result\n", file);
 }
 
+/// Where 'kinecal calibrate' will write the zeros of the joints that a configuration frees; empty if
+/// it frees none.
+std::string joint_zeros_text(const Robot& robot, const std::string& urdf_text,
+                             const std::string& config, const InitOptions& options) {
+  Diagnostics reported_by_check;
+  const Config written =
+      parse_config(config, options.output, reported_by_check, NothingFree::is_allowed);
+  std::vector<JointPatch> patches;
+  for (const StepConfig& step : written.steps) {
+    for (const FreeParamConfig& free : step.free_params) {
+      if (robot.has_joint(free.name)) patches.push_back({free.name, 1.0, {}});
+    }
+  }
+  const OffsetPlaces places = offset_places(urdf_text, options.urdf, robot, patches);
+  if (patches.empty()) return "";
+  const std::string_view param = "<param name=\"offset\"> of <ros2_control>";
+  if (places.rising.empty()) return fmt::format("joint zeros: calibrate adds them to {}\n", param);
+  std::string text = "joint zeros: calibrate writes ";
+  if (places.ros2_control.empty()) text += "them ";
+  if (!places.ros2_control.empty()) {
+    text +=
+        fmt::format("those of {} into {}, others ", fmt::join(places.ros2_control, ", "), param);
+  }
+  text += "into <calibration rising>, which ";
+  return text + (goes_into_rising(urdf_text, options.urdf, robot, patches)
+                     ? "robot_state_publisher, MoveIt and the UR driver do not read; "
+                       "'calibrate --offsets origin' moves the joints' origins instead\n"
+                     : "this URDF has already\n");
+}
+
 }  // namespace
 
 int init(const InitOptions& options) {
@@ -374,7 +406,8 @@ int init(const InitOptions& options) {
   if (!options.capture.empty()) {
     check_output(options.capture, {options.urdf, options.output}, options.force);
   }
-  const Robot robot = read_urdf(options.urdf);
+  const std::string urdf_text = read_urdf_text(options.urdf);
+  const Robot robot = parse_urdf(urdf_text, options.urdf);
   const Configured made = configure(robot, options);
   check();  // the file may have appeared meanwhile
   write_text_file(options.output, made.text);
@@ -385,6 +418,7 @@ int init(const InitOptions& options) {
   }
   say("wrote {}\n", options.output);
   if (options.from.empty()) write_capture(robot, made.answers, options);
+  say("{}", joint_zeros_text(robot, urdf_text, made.text, options));
   std::vector<std::string> named = options.from;
   named.push_back(options.urdf);
   const bool streams = std::any_of(named.begin(), named.end(), detail::is_stream);

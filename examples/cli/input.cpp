@@ -17,7 +17,6 @@
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
-#include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
 #include "progress.hpp"
@@ -96,7 +95,6 @@ Recording read_recordings(const std::vector<std::string>& files, Diagnostics& di
     auto read =
         attempt([&] { return read_recording(file, diagnostics, 0, line.meter()); }, diagnostics);
     if (!read) continue;
-    set_joint_velocities(read->samples);
     all.samples.insert(all.samples.end(), std::make_move_iterator(read->samples.begin()),
                        std::make_move_iterator(read->samples.end()));
     if (all.urdf.empty()) all.urdf = std::move(read->urdf);

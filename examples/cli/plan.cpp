@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "explanations.hpp"
 #include "kinecal/config/capture/session_follower.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/report/text.hpp"
@@ -327,10 +328,44 @@ void write_outputs(const PlanOptions& options, const StudyInput& input, const Po
   say("{}\n", options.report);
 }
 
+/// How many poses tell two explanations apart, and which.
+int plan_between(const PlanOptions& options) {
+  const std::unique_ptr<StudyInput> input = read_study(options, options.candidates);
+  drop_poses_of_have(*input, SelectOptions{}.least_distance);
+  PoseChoice choice = pose_choice(*input);
+  choose_between(*input, choice);
+  std::optional<ProgressLine> line(std::in_place);
+  const DecidingPoses found = deciding_poses(*input, choice, line->meter());
+  const std::vector<int> order = short_order(choice, found.chosen);
+  const std::string details =
+      order.empty() ? std::string() : explanations_text(*input, choice, found.chosen);
+  line.reset();
+  const std::string names =
+      fmt::format("'{}' and '{}'", input->explanations[0].front(), input->explanations[1].front());
+  if (order.empty()) {
+    say("no more poses are needed: those you have tell {} apart (correlation {:.3f})\n", names,
+        found.correlation);
+  } else {
+    say("{} {} {} apart: correlation {:.3f}, and from {} on they look alike\n{} with the URDF's "
+        "speeds and 3 s a stop\n\n{}{}",
+        poses_text(choice, static_cast<int>(order.size())), found.decide ? "tell" : "do not tell",
+        names, found.correlation, kAlike, duration_text(session_seconds(choice, order)), details,
+        found.curve);
+  }
+  if (!options.output.empty() && !order.empty()) {
+    write_pose_file(options.output, poses_of_choice(*input, order));
+    say("{}\n", options.output);
+  } else if (!options.output.empty()) {
+    say("{}: not written, no more poses are needed\n", options.output);
+  }
+  return found.decide ? kDone : kNotUsable;
+}
+
 }  // namespace
 
 int plan(const PlanOptions& options) {
   check_outputs(options);
+  if (!options.tell_apart.empty()) return plan_between(options);
   (void)accuracy_of_plan(options.accuracy);
   const std::unique_ptr<StudyInput> input = read_study(options, options.candidates);
   const double wanted = wanted_position(options.accuracy, *input);

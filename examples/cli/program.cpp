@@ -110,8 +110,8 @@ void add_robot_files(CLI::App& command, RobotFileOptions& files) {
       ->capture_default_str();
   command
       .add_option("--xacro", files.xacro,
-                  "the xacro file that the URDF was made of: numbers that are literals there are "
-                  "patched, others are named with their lines")
+                  "the xacro file that the URDF was made of: numbers that are literals there or in "
+                  "files that it includes are patched, others are named with their lines")
       ->type_name("FILE");
 }
 
@@ -431,6 +431,16 @@ void add_choice(CLI::App& command, StudyFiles& files, int& candidates, std::stri
   command.add_flag("--force", force, "replace a file that exists");
 }
 
+CLI::Option* add_tell_apart(CLI::App& command, StudyFiles& files) {
+  return command
+      .add_option("--tell-apart", files.tell_apart,
+                  "two candidates of 'kinecal identify' that explain the same: the poses that show "
+                  "which one is wrong; with --samples of a tracker, new poses between those of the "
+                  "samples")
+      ->delimiter(',')
+      ->type_name("A,B");
+}
+
 void add_select_poses(CLI::App& command, SelectPosesOptions& options) {
   add_choice(command, options, options.candidates, options.output, options.force);
   command.add_option("--count", options.count, "poses to choose")
@@ -448,13 +458,7 @@ void add_select_poses(CLI::App& command, SelectPosesOptions& options) {
                   "treat poses as equal if every joint is within this fraction of its range")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  command
-      .add_option("--tell-apart", options.tell_apart,
-                  "two candidates of 'kinecal identify' that explain the same: the poses that show "
-                  "which one is wrong; with --samples of a tracker, new poses between those of the "
-                  "samples")
-      ->delimiter(',')
-      ->type_name("A,B");
+  add_tell_apart(command, options);
   command.add_option("--failures", options.failures, "poses that may fail")
       ->check(CLI::Range(0, 100))
       ->capture_default_str()
@@ -471,15 +475,19 @@ void add_select_poses(CLI::App& command, SelectPosesOptions& options) {
 
 void add_plan(CLI::App& command, PlanOptions& options) {
   add_choice(command, options, options.candidates, options.output, options.force);
-  command
-      .add_option("--accuracy", options.accuracy,
-                  "of the gripper in the camera frame, one standard deviation: \"gripper 0.5 mm\"")
-      ->capture_default_str()
-      ->type_name("TEXT");
-  command
-      .add_option("--report", options.report,
-                  "a page with the accuracy over the number of poses: its name ends in .html")
-      ->type_name("FILE");
+  CLI::Option* accuracy =
+      command
+          .add_option(
+              "--accuracy", options.accuracy,
+              "of the gripper in the camera frame, one standard deviation: \"gripper 0.5 mm\"")
+          ->capture_default_str()
+          ->type_name("TEXT");
+  CLI::Option* report =
+      command
+          .add_option("--report", options.report,
+                      "a page with the accuracy over the number of poses: its name ends in .html")
+          ->type_name("FILE");
+  add_tell_apart(command, options)->excludes(accuracy)->excludes(report);
 }
 
 void add_detect(CLI::App& command, DetectOptions& options) {

@@ -80,17 +80,20 @@ void add_homing(const RobotFileOptions& options, const Input& input,
 
 void add_xacro(const std::string& name, const Input& input, const std::string& calibrated,
                RobotFiles& files) {
-  const fs::path file = file_behind(name);
-  const std::string text = detail::read_text_file(name);
-  const XacroPatch patch = patch_xacro(text, name, input.urdf_text, calibrated);
-  if (!patch.patched.empty()) {
-    files.said.note({name, 0}, fmt::format("has the calibration of {}: {}",
-                                           counted(patch.patched.size(), "joint"),
-                                           fmt::join(patch.patched, ", ")));
+  const std::vector<XacroFile> sources = read_xacro_files(name, files.said);
+  const XacroPatch patch = patch_xacro(sources, input.urdf_text, calibrated);
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const PatchedXacro& of = patch.files[i];
+    if (!of.patched.empty()) {
+      files.said.note({of.name, 0}, fmt::format("has the calibration of {}: {}",
+                                                counted(of.patched.size(), "joint"),
+                                                fmt::join(of.patched, ", ")));
+    }
+    if (of.text == sources[i].text) continue;
+    const fs::path file = file_behind(of.name);
+    files.sets.push_back({folder_of(file.string()), {{file.filename().string(), of.text}}});
   }
   for (const std::string& unpatched : patch.unpatched) files.said.warnings.push_back(unpatched);
-  if (patch.text == text) return;
-  files.sets.push_back({folder_of(file.string()), {{file.filename().string(), patch.text}}});
 }
 
 bool names_same_file(const std::string& one, const std::string& other) {
@@ -104,8 +107,8 @@ void check_robot_files(const ResultOptions& options, const Input& input) {
   const RobotFileOptions& of = options.robot_files;
   std::vector<std::string> inputs = options.samples;
   inputs.insert(inputs.end(), {options.urdf, options.config});
-  for (const std::string& name : {of.kinematics, of.homing, of.xacro}) {
-    if (name.empty()) continue;
+  const auto check = [&](const std::string& name) {
+    if (name.empty()) return;
     if (name == "-") throw InputError("'-' is no file that can be patched; give its name");
     for (const std::string& other : inputs) {
       if (!names_same_file(name, other)) continue;
@@ -113,6 +116,12 @@ void check_robot_files(const ResultOptions& options, const Input& input) {
     }
     inputs.push_back(name);
     const OutputFolder can_be_written(folder_of(file_behind(name).string()));
+  };
+  for (const std::string& name : {of.kinematics, of.homing, of.xacro}) check(name);
+  if (!of.xacro.empty()) {
+    Diagnostics said_when_written;
+    const std::vector<XacroFile> all = read_xacro_files(of.xacro, said_when_written);
+    for (std::size_t i = 1; i < all.size(); ++i) check(all[i].name);  // that it includes
   }
   (void)robot_files(options, input, {}, input.urdf_text);
 }
@@ -128,7 +137,7 @@ RobotFiles robot_files(const ResultOptions& options, const Input& input,
 }
 
 void write(const RobotFiles& files) {
-  for (const RobotFiles::Set& set : files.sets) OutputFolder(set.folder).write(set.files);
+  write_file_sets(files.sets);
   print(files.said);
 }
 

@@ -2,25 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/files/results/output_file.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/urdf/patch_urdf.hpp"
 
 namespace kinecal::cli {
 
 /// The files with their new contents; nothing is written yet.
 struct RobotFiles {
-  /// Files of one folder that belong together: a file, and a copy of it as it was.
-  struct Set {
-    std::filesystem::path folder;
-    std::vector<OutputFile> files;
-  };
-  std::vector<Set> sets;
+  std::vector<FileSet> sets;
   Diagnostics said;  ///< what changes, and what cannot be written
 };
 
@@ -36,7 +30,7 @@ void check_robot_files(const ResultOptions& options, const Input& input);
                                      const std::vector<JointPatch>& patches,
                                      const std::string& calibrated);
 
-/// Writes each set of files completely or not at all, and prints what was said.
+/// Writes all files or none, and prints what was said.
 void write(const RobotFiles& files);
 
 }  // namespace kinecal::cli

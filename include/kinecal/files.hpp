@@ -58,6 +58,7 @@
 #include "kinecal/files/urdf/robot_header.hpp"
 #include "kinecal/files/urdf/velocity_limits.hpp"
 #include "kinecal/files/urdf/visuals.hpp"
+#include "kinecal/files/urdf/xacro_files.hpp"
 #include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/files/yaml/yaml_node.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"

@@ -21,6 +21,10 @@ std::vector<JointPatch> patches_for(const Robot& robot) {
     patch.joint = joint.name;
     patch.correction.translation.x() = 0.001;
     if (moves(joint.type) && !joint.mimic) patch.offset = 0.01;
+    if (joint.mimic) {
+      patch.mimic_multiplier = 0.01;
+      patch.mimic_offset = 0.02;
+    }
     patches.push_back(patch);
   }
   return patches;

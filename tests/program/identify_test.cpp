@@ -160,5 +160,24 @@ TEST_F(IdentifyProgram, NamesPosesThatDecideBetweenTwoExplanations) {
   EXPECT_THAT(none.err, HasSubstr("no pose tells 'elbow_joint_z' and 'wrist_1_joint_z' apart"));
 }
 
+TEST_F(IdentifyProgram, PlansHowManyPosesDecideBetweenTwoExplanations) {
+  ASSERT_EQ(kinecal("identify " + kFiles).code, 0);
+  const std::string call = "plan " + kFiles + "--config identified.yaml --tell-apart ";
+  const Outcome planned = kinecal(
+      call + "shoulder_lift_joint,shoulder_lift_joint_gear_ratio --candidates 50 -o poses.yaml");
+  ASSERT_EQ(planned.code, 0) << planned.out << planned.err;
+  const std::size_t end = planned.out.find(" tell 'shoulder_lift_joint' and "),
+                    none = std::string::npos;
+  if (planned.out.find("no more poses are needed") == none) {
+    ASSERT_NE(end, none) << planned.out;
+    EXPECT_THAT(planned.out, HasSubstr("By number of poses; random: "));
+    EXPECT_TRUE(fs::exists(folder_ / "poses.yaml"));
+  }
+  EXPECT_THAT(kinecal(call + "elbow_joint_z,wrist_1_joint_z --candidates 50").err,
+              HasSubstr("no pose tells 'elbow_joint_z' and 'wrist_1_joint_z' apart"));
+  EXPECT_EQ(kinecal(call + "elbow_joint,elbow_joint_z --accuracy 'gripper 1 mm'").code, 1)
+      << "an accuracy is not what decides";
+}
+
 }  // namespace
 }  // namespace kinecal

@@ -6,6 +6,10 @@
 #include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
+#include <fstream>
+#include <iterator>
+#include <string>
+
 #include "support/data.hpp"
 #include "support/paths.hpp"
 #include "support/run_program.hpp"
@@ -265,6 +269,38 @@ TEST_F(Init, SaysThatItsSigmaIsAGuess) {
   const Outcome made = init("ur5e", "--target tracker --arm tool0");
   EXPECT_THAT(made.out, HasSubstr("note: each sigma in calibrate.yaml is a guess"));
   EXPECT_THAT(read("calibrate.yaml"), HasSubstr("0.0001 is a guess, write yours"));
+}
+
+TEST_F(Init, SaysWhoReadsTheZeros) {
+  const Outcome made = init("ur5e", "--target tracker --arm tool0");
+  EXPECT_THAT(made.out,
+              HasSubstr("joint zeros: calibrate writes them into <calibration rising>, which "
+                        "robot_state_publisher, MoveIt and the UR driver do not read; 'calibrate "
+                        "--offsets origin' moves the joints' origins instead\n"));
+  const std::string urdf_text = [&] {
+    std::ifstream file(urdf("ur5e"));
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  }();
+  const std::string end = "</robot>";
+  const auto with = [&](const std::string& joints) {
+    std::string text = urdf_text;
+    write("own.urdf",
+          text.insert(text.rfind(end), "<ros2_control>" + joints + "</ros2_control>\n"));
+    return run(test::kinecal_program() +
+               " init --force --urdf own.urdf --target tracker --arm tool0 < /dev/null")
+        .out;
+  };
+  const auto joint = [](const std::string& name) {
+    return "<joint name=\"" + name + "\"><param name=\"offset\">0.0</param></joint>";
+  };
+  EXPECT_THAT(with(joint("elbow_joint")),
+              HasSubstr("joint zeros: calibrate writes those of elbow_joint into <param "
+                        "name=\"offset\"> of <ros2_control>, others into <calibration rising>"));
+  EXPECT_THAT(
+      with(joint("shoulder_pan_joint") + joint("shoulder_lift_joint") + joint("elbow_joint") +
+           joint("wrist_1_joint") + joint("wrist_2_joint") + joint("wrist_3_joint")),
+      HasSubstr("joint zeros: calibrate adds them to <param name=\"offset\"> of "
+                "<ros2_control>\n"));
 }
 
 TEST_F(Init, WritesNothingWhereTheAnswersEnd) {

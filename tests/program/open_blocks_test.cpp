@@ -105,6 +105,33 @@ error_blocks:
   EXPECT_THAT(result.err, HasSubstr("a URDF cannot hold 'elbow_gear_ratio'"));
 }
 
+TEST_F(OpenBlocksProgram, WritesTheErrorsOfAMimicJointIntoTheUrdf) {
+  const auto urdf = [](const std::string& mimic) {
+    std::string text = kOpenUrdf;
+    return text.insert(text.rfind("<limit"), mimic);
+  };
+  robot_ = parse_urdf(urdf("<mimic joint='shoulder' multiplier='0.52' offset='0.03'/>"), "true");
+  record([&](const Pose<double>& hand, Sample& sample) {
+    sample.observations = {
+        {"body", {{"hand", Vector3<double>::Zero(), Matrix3<double>::Identity()}}},
+        {"mocap", {{"base", hand.translation, hand.rotation}}}};
+  });
+  write("arm.urdf", urdf("<mimic joint='shoulder' multiplier='0.5'/>"));
+  const test::Outcome result = calibrate(R"(models:
+ - {name: body, type: chain6d, frame: hand}
+ - {name: mocap, type: chain6d, frame: base}
+free_params: [elbow_mimic_multiplier, elbow_mimic_offset]
+error_blocks:
+ - {name: track, type: pose_to_pose, model_a: body, model_b: mocap, translation_scale: 1000, rotation_scale: 500}
+)");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NEAR(value("elbow_mimic_multiplier"), 0.02, 1e-9);
+  EXPECT_THAT(result.err, testing::Not(HasSubstr("cannot hold")));
+  const Robot calibrated = parse_urdf(read("result/calibrated.urdf"), "calibrated.urdf");
+  EXPECT_NEAR(calibrated.joint("elbow").mimic->multiplier, 0.52, 1e-9);
+  EXPECT_NEAR(calibrated.joint("elbow").mimic->offset, 0.03, 1e-9);
+}
+
 TEST_F(OpenBlocksProgram, LeavesOutAnOrientationThatIsNotANumberWithACount) {
   int n = 0;
   record([&](const Pose<double>& hand, Sample& sample) {

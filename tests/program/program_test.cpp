@@ -262,6 +262,23 @@ TEST_F(Program, WritesOriginsHomingOffsetsAndXacro) {
   EXPECT_EQ(read("k.yaml"), kinematics);
 }
 
+TEST_F(Program, PatchesTheFileThatAXacroIncludes) {
+  fs::create_directories(folder_ / "parts");
+  const std::string top =
+      "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'>\n"
+      "<xacro:include filename='parts/arm.xacro'/>\n"
+      "<xacro:include filename='parts/gone.xacro'/>\n</robot>\n";
+  write("top.xacro", top);
+  write("parts/arm.xacro", kUrdf);
+  const Outcome result = calibrate("--offsets origin --xacro top.xacro");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(read("top.xacro"), top);
+  EXPECT_THAT(read("parts/arm.xacro"), HasSubstr("rpy=\"0 0.0"));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("parts/arm.xacro: has the calibration of"),
+                                HasSubstr("top.xacro:3: 'parts/gone.xacro' is included and not "
+                                          "patched: there is no such file")));
+}
+
 /// Before the work begins, and before anything is written.
 TEST_F(Program, FilesThatCannotBePatchedAreRefused) {
   write("other.yaml", "a: 1\n");
@@ -279,6 +296,10 @@ TEST_F(Program, FilesThatCannotBePatchedAreRefused) {
   expect_refusal("--xacro missing.xacro", "missing.xacro: cannot be read");
   expect_refusal("--xacro c.yaml", "c.yaml: would replace an input");
   expect_refusal("--xacro other.yaml", "other.yaml:");
+  write("top.xacro",
+        "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'>"
+        "<xacro:include filename='tiny.urdf'/></robot>");
+  expect_refusal("--xacro top.xacro", "tiny.urdf: would replace an input");
   expect_refusal("--kinematics /proc/k.yaml", "/proc");
   EXPECT_EQ(read("other.yaml"), "a: 1\n");
 }

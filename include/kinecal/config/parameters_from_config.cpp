@@ -172,16 +172,11 @@ inline void add_params(ParameterTable& table, const Robot& robot, const StepConf
     }
     if (add_joint_model(table, robot, param.name, param.place, diagnostics)) {
       if (table.find(param.name) < 0) continue;
-      const JointModelParameter of = checked_joint_model(robot, param.name);
-      const bool of_mimic = of.partner.empty() && robot.joint(of.joint).mimic;
-      diagnostics.warning(
-          param.place, fmt::format("{}: calibration.yaml has its value",
-                                   of_mimic ? fmt::format("'{}' is not written to the URDF; add it "
-                                                          "to <mimic>",
-                                                          param.name)
-                                            : fmt::format("a URDF cannot hold '{}'; apply it in "
-                                                          "the driver of the joint",
-                                                          param.name)));
+      if (fits_urdf(checked_joint_model(robot, param.name))) continue;
+      diagnostics.warning(param.place,
+                          fmt::format("a URDF cannot hold '{}'; apply it in the driver of the "
+                                      "joint: calibration.yaml has its value",
+                                      param.name));
       continue;
     }
     diagnostics.error(

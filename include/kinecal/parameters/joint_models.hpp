@@ -103,6 +103,12 @@ struct JointModelParameter {
 [[nodiscard]] std::optional<JointModelParameter> joint_model_parameter(const Robot& robot,
                                                                        std::string_view name);
 
+/// True if a URDF can hold the parameter: in <mimic> of its joint.
+[[nodiscard]] inline bool fits_urdf(const JointModelParameter& of) {
+  const std::string_view name = of.model->parameters()[of.part].name;
+  return name == MimicErrors::kParameters[0].name || name == MimicErrors::kParameters[1].name;
+}
+
 /// The same.
 /// @throws RobotError  if it is not one, or the joint cannot have it
 [[nodiscard]] JointModelParameter checked_joint_model(const Robot& robot, const std::string& name);

@@ -83,6 +83,51 @@ TEST_F(ReadCsvSamples, PutsEveryColumnWhereItBelongs) {
   EXPECT_EQ(sample.observations[2].features[0].point, Vector3<double>(320.5, 240.0, 0.0));
 }
 
+const char* const kMoving = R"(joints: {unit: degrees, columns: {pan: q1, tilt: q2}}
+sliding: {unit: metres, columns: {lift: l}}
+velocities: {unit: deg/s, columns: {tilt: dq2, pan: dq1}}
+sliding_velocities: {unit: mm/s, columns: {lift: dl}}
+observations:
+ - {sensor: arm, frame: smr, constant: [0, 0, 0]}
+)";
+const char* const kMovingTable = "q1,q2,l,dq1,dq2,dl\n90,-45,0.1,180,-90,20\n";
+
+TEST_F(ReadCsvSamples, VelocitiesAreInTheOrderOfTheJoints) {
+  const auto samples = read(kMovingTable, kMoving);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_DOUBLE_EQ(*samples[0].velocity("pan"), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(*samples[0].velocity("tilt"), -std::numbers::pi / 2);
+  EXPECT_EQ(*samples[0].velocity("lift"), 0.02);
+  EXPECT_THAT(read().front().joint_velocities, IsEmpty()) << "none are given";
+}
+
+TEST_F(ReadCsvSamples, VelocitiesAreOfAllJointsAndInEveryRow) {
+  (void)read(kMovingTable, with(kMoving, "sliding_velocities:", "#"));
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(HasSubstr("m.yaml:3: velocities: no column for joint 'lift'; give all")));
+  (void)read(kMovingTable, with(kMoving, "{tilt: dq2, pan: dq1}", "{}"));
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(HasSubstr("velocities: no column for joints 'pan', 'tilt'; give all")));
+  (void)read(kMovingTable, with(kMoving, "pan: dq1}", "pan: dq1, wrist: dq1}"));
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(HasSubstr("m.yaml:3: velocities: joint 'wrist' has no position")));
+  (void)read(kMovingTable, with(kMoving, "unit: deg/s", "unit: degrees"));
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(HasSubstr("velocities: unit 'degrees' is not one of rad/s, deg/s")));
+  for (const char* nothing : {"nan", ""}) {
+    (void)read(with(kMovingTable, "-90", nothing), kMoving);
+    EXPECT_THAT(diagnostics_.errors,
+                ElementsAre(HasSubstr("t.csv:2: column 'dq2' has no velocity of joint 'tilt'")));
+  }
+}
+
+TEST_F(ReadCsvSamples, VelocitiesThatLookLikeDegreesGiveAWarning) {
+  (void)read(kMovingTable, with(kMoving, "{unit: deg/s, columns: {tilt", "{columns: {tilt"));
+  EXPECT_THAT(diagnostics_.warnings,
+              testing::Contains(HasSubstr("the velocity of joint 'pan' is at 180 rad/s or m/s")));
+}
+
 TEST_F(ReadCsvSamples, TakesIdsFromTheMappingOrFromColumns) {
   const std::string mapping =
       "joints: {columns: {pan: q}}\nobservations:\n"

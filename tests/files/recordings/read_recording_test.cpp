@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -11,6 +12,7 @@
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/convert.hpp"
 #include "kinecal/files/recordings/pose_messages.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
 #include "support/data.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -129,6 +131,30 @@ TEST_F(RecordingTest, OfSamplesAndAUrdfIsReadAgain) {
   }
   EXPECT_EQ(recording_format(path("a")), RecordingFormat::ros1_bag);
   EXPECT_EQ(recording_format(path("b")), RecordingFormat::mcap);
+  EXPECT_THAT(diagnostics_.errors, ElementsAre());
+}
+
+TEST_F(RecordingTest, HasVelocitiesFromNeighboursInTime) {
+  std::vector<Sample> samples = made_samples();  // pan moves by 0.1 from each to the next
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    samples[n].stamp = std::chrono::milliseconds(1000 + 100 * static_cast<long>(n));
+  }
+  std::ofstream yaml(path("a.yaml"));
+  write_samples(yaml, samples);
+  yaml.close();
+  BagOutput bag(path("a.mcap"), Encoding::cdr);
+  write_samples(bag, samples);
+  bag.finish();
+  for (const char* file : {"a.yaml", "a.mcap"}) {
+    SCOPED_TRACE(file);
+    const Recording recording = read(path(file));
+    ASSERT_EQ(recording.samples.size(), 3u);
+    EXPECT_NEAR(recording.samples[1].velocity("pan").value_or(0.0), 1.0, 1e-9);
+    EXPECT_NEAR(recording.samples[1].velocity("tilt").value_or(1.0), 0.0, 1e-9);
+    EXPECT_NEAR(recording.samples[2].move("pan").value_or(0.0), 0.1, 1e-9);
+    const Recording copy = read_as_recorded(path(file), diagnostics_);
+    EXPECT_THAT(copy.samples[1].joint_velocities, ElementsAre()) << "a copy has what is recorded";
+  }
   EXPECT_THAT(diagnostics_.errors, ElementsAre());
 }
 

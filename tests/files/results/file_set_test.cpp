@@ -74,6 +74,27 @@ TEST_F(FileSet, WritesNothingWhenOneFileCannotBePlaced) {
   EXPECT_EQ(count(), 2);
 }
 
+TEST_F(FileSet, OfSeveralFoldersIsWrittenWholeOrNotAtAll) {
+  const auto a = folder_ / "a", b = folder_ / "b";
+  write_file_sets({{a, {{"x", "1"}}}, {b, {{"y", "2"}}}, {folder_ / "b/../a", {{"z", "3"}}}});
+  const auto content = [](const std::filesystem::path& path) {
+    std::ifstream file(path);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  EXPECT_EQ(content(a / "x") + content(b / "y") + content(a / "z"), "123");
+  std::filesystem::create_directories(b / "y2");
+  EXPECT_THROW(write_file_sets({{a, {{"x", "4"}}}, {b, {{"y", "5"}, {"y2", "6"}}}}), OutputError);
+  EXPECT_EQ(content(a / "x") + content(b / "y"), "12");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(a), {}), 2) << "nothing else is left";
+  const std::string no_room_for_a_second_name(250, 'n');  // which it has while it is replaced
+  write_file_sets({{b, {{no_room_for_a_second_name, "7"}}}});
+  EXPECT_THROW(
+      write_file_sets({{a, {{"x", "8"}, {"new", "9"}}}, {b, {{no_room_for_a_second_name, "10"}}}}),
+      OutputError);
+  EXPECT_EQ(content(a / "x") + content(b / no_room_for_a_second_name), "17") << "a is put back";
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(a), {}), 2);
+}
+
 TEST_F(FileSet, WritesNothingWhenANameCannotBeUsed) {
   OutputFolder(folder_).write({{"a", "old"}});
   EXPECT_THROW(OutputFolder(folder_).write({{"a", "new"}, {"no/such/folder", "new"}}), OutputError);

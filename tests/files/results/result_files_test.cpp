@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <map>
 
@@ -28,6 +29,23 @@ TEST(JointPatches, AreMadeOfOffsetsAndFrameCorrectionsOfTheRobotsJoints) {
   EXPECT_EQ(patches[1].joint, "camera_joint");
   EXPECT_EQ(patches[1].correction.translation.x(), 0.01);
   EXPECT_LE((log(patches[1].correction.rotation) - Vector3<double>(0, 0, -0.03)).norm(), 1e-15);
+}
+
+TEST(JointPatches, HaveTheErrorsOfMimicJoints) {
+  const Robot robot = test::mobile_manipulator();
+  const auto mimic = std::find_if(robot.joints().begin(), robot.joints().end(),
+                                  [](const Joint& joint) { return joint.mimic.has_value(); });
+  ASSERT_NE(mimic, robot.joints().end());
+  CalibrationResult result;
+  result.table.add({.name = mimic->name + "_mimic_multiplier", .value = 0.125});
+  result.table.add({.name = mimic->name + "_mimic_offset", .value = -0.5});
+  const auto patches = joint_patches(robot, result.table);
+  ASSERT_EQ(patches.size(), 1u);
+  EXPECT_EQ(patches[0].joint, mimic->name);
+  EXPECT_EQ(patches[0].mimic_multiplier, 0.125);
+  EXPECT_EQ(patches[0].mimic_offset, -0.5);
+  EXPECT_THAT(detail::values_yaml(robot, result, {}),
+              HasSubstr("_mimic_offset: -0.5  # in <mimic> of the URDF\n"));
 }
 
 TEST(ResultFiles, CameraFilesAreNamedAsUpstreamNamesThem) {

@@ -363,7 +363,16 @@ TEST(PatchUrdfRos2Control, IsChosenForJointsThatHaveAnOffsetThere) {
   };
   EXPECT_FALSE(into_rising(with));
   EXPECT_TRUE(into_rising(without));
-  EXPECT_FALSE(into_rising(driven_joint("", "<calibration rising='0'/>"))) << "it is read already";
+  const std::string calibrated = driven_joint("", "<calibration rising='0'/>");
+  EXPECT_FALSE(into_rising(calibrated)) << "it is read already";
+  const auto places = [&](const std::string& text) {
+    return offset_places(text, "arm.urdf", parse_urdf(text, "arm.urdf"), offset);
+  };
+  EXPECT_THAT(places(with).ros2_control, ElementsAre("j"));
+  EXPECT_THAT(places(with).rising, ElementsAre());
+  EXPECT_THAT(places(without).rising, ElementsAre("j"));
+  EXPECT_FALSE(places(without).has_calibration);
+  EXPECT_TRUE(places(calibrated).has_calibration);
 }
 
 TEST(PatchUrdfRos2Control, AnOffsetInTicksIsLeftToItsDriver) {
@@ -571,6 +580,64 @@ TEST(PatchUrdfError, NumbersToBeChangedThatCannotBeRead) {
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), AllOf(StartsWith("arm.urdf:3: joint 'j'"), HasSubstr("${z}"),
                                 HasSubstr("run xacro on it first")));
+  }
+}
+
+/// A driver and two mimic joints, the second of which mimics the first.
+constexpr const char* kMimics = R"(<robot name="hand">
+  <link name="a"/><link name="b"/><link name="c"/><link name="d"/>
+  <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+  <joint name="k" type="continuous"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/>
+    <mimic joint="j" multiplier="2.00"/></joint>
+  <joint name="l" type="continuous"><parent link="c"/><child link="d"/><axis xyz="0 0 1"/>
+    <mimic multiplier="-0.5" joint="k" offset="0.1"/></joint>
+</robot>
+)";
+
+TEST(PatchUrdfMimic, HoldsTheErrorsOfAMimicJointWhereverZerosGo) {
+  const Robot before = parse_urdf(kMimics, "hand.urdf");
+  const JointPatch driver{"j", 0.25, {}}, k{"k", 0.0, {}, 0.1, 0.05}, l{"l", 0.0, {}, -0.02, 0.0};
+  const double q = 0.7;  // a reading of j
+  // What a joint model computes: the URDF's mimic of the true position, and errors of the reading.
+  const double true_k = 2.0 * (q + 0.25) + 0.1 * q + 0.05;
+  const double true_l = -0.5 * 2.0 * (q + 0.25) + 0.1 - 0.02 * q;
+  for (const OffsetStyle style : {OffsetStyle::rising, OffsetStyle::origin}) {
+    const std::string text = patch_urdf(kMimics, "hand.urdf", before, {driver, k, l}, style);
+    const Robot after = parse_urdf(text, "hand.urdf");
+    const bool is_published = style == OffsetStyle::rising;
+    const double published = is_published ? q + 0.25 : q;
+    const auto position = [&](const std::string& joint, double in_origin) {
+      const Mimic by = drive(after, after.joint(joint));
+      return by.multiplier * published + by.offset + (is_published ? 0.0 : in_origin);
+    };
+    EXPECT_NEAR(position("k", 2.0 * 0.25), true_k, kSamePose) << text;
+    EXPECT_NEAR(position("l", -0.5 * 2.0 * 0.25), true_l, kSamePose) << text;
+  }
+}
+
+TEST(PatchUrdfMimic, NumbersThatDoNotChangeKeepTheirText) {
+  const Robot robot = parse_urdf(kMimics, "hand.urdf");
+  std::string expected = kMimics;
+  expected.replace(expected.find("offset=\"0.1\""), 12, "offset=\"0.125\"");
+  EXPECT_EQ(
+      patch_urdf(kMimics, "hand.urdf", robot, {{"l", 0.0, {}, 0.0, 0.025}}, OffsetStyle::rising),
+      expected);
+  const std::string of_k =
+      patch_urdf(kMimics, "hand.urdf", robot, {{"k", 0.0, {}, 0.0, 0.5}}, OffsetStyle::rising);
+  EXPECT_THAT(of_k, HasSubstr("<mimic joint=\"j\" multiplier=\"2.00\" offset=\"0.5\"/>"));
+  EXPECT_THAT(of_k, HasSubstr("<mimic multiplier=\"-0.5\" joint=\"k\" offset=\"0.35\"/>"))
+      << "the position of l stays";
+}
+
+TEST(PatchUrdfMimic, AJointThatDoesNotMimicIsAnError) {
+  const Robot robot = parse_urdf(kMimics, "hand.urdf");
+  try {
+    (void)patch_urdf(kMimics, "hand.urdf", robot, {{"j", 0.0, {}, 0.1, 0.0}}, OffsetStyle::rising);
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    EXPECT_STREQ(e.what(),
+                 "hand.urdf:3: joint 'j' does not mimic another: it has no <mimic> to correct");
   }
 }
 

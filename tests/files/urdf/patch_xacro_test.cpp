@@ -68,7 +68,7 @@ std::string calibrated(const std::vector<JointPatch>& patches,
 
 XacroPatch patched(const std::vector<JointPatch>& patches,
                    OffsetStyle style = OffsetStyle::origin) {
-  return patch_xacro(kXacro, "arm.xacro", kUrdf, calibrated(patches, style));
+  return patch_xacro({{"arm.xacro", kXacro}}, kUrdf, calibrated(patches, style));
 }
 
 JointPatch shifted(const std::string& joint, double z) {
@@ -83,15 +83,15 @@ std::string with(std::string text, const std::string& old, const std::string& re
 
 TEST(PatchXacro, LiteralsAreReplacedAndAllElseStays) {
   const XacroPatch patch = patched({shifted("left_pan", 0.5)});
-  EXPECT_EQ(patch.text, with(kXacro, "0 0   0.10", "0 0   0.6"));
-  EXPECT_THAT(patch.patched, ElementsAre("left_pan"));
+  EXPECT_EQ(patch.files[0].text, with(kXacro, "0 0   0.10", "0 0   0.6"));
+  EXPECT_THAT(patch.files[0].patched, ElementsAre("left_pan"));
   EXPECT_THAT(patch.unpatched, IsEmpty());
 }
 
 TEST(PatchXacro, ExpressionsAreNamedWithTheirLineAndNewValue) {
   const XacroPatch patch = patched({shifted("left_lift", 0.5)});
-  EXPECT_EQ(patch.text, kXacro);
-  EXPECT_THAT(patch.patched, IsEmpty());
+  EXPECT_EQ(patch.files[0].text, kXacro);
+  EXPECT_THAT(patch.files[0].patched, IsEmpty());
   EXPECT_THAT(
       patch.unpatched,
       ElementsAre("arm.xacro:14: joint 'left_lift': xyz=\"0 0 ${height}\" is an expression; "
@@ -100,8 +100,8 @@ TEST(PatchXacro, ExpressionsAreNamedWithTheirLineAndNewValue) {
 
 TEST(PatchXacro, AJointWithBothGetsTheLiteralsAndTheRestIsNamed) {
   const XacroPatch patch = patched({{"left_pan", 0.25, {}}});
-  EXPECT_EQ(patch.text, with(with(kXacro, "rpy=\"0 0 0\"", "rpy=\"0 0 0.25\""), "upper=\"2.0\"",
-                             "upper=\"1.75\""));
+  EXPECT_EQ(patch.files[0].text, with(with(kXacro, "rpy=\"0 0 0\"", "rpy=\"0 0 0.25\""),
+                                      "upper=\"2.0\"", "upper=\"1.75\""));
   EXPECT_THAT(patch.unpatched,
               ElementsAre(AllOf(StartsWith("arm.xacro:10: joint 'left_pan': lower=\"${-2}\""),
                                 HasSubstr("lower=\"-2.25\" of <limit>"))));
@@ -109,19 +109,20 @@ TEST(PatchXacro, AJointWithBothGetsTheLiteralsAndTheRestIsNamed) {
 
 TEST(PatchXacro, RisingIsCreatedWhereTheUrdfHasIt) {
   const XacroPatch patch = patched({{"left_pan", 0.25, {}}}, OffsetStyle::rising);
-  EXPECT_EQ(patch.text, with(kXacro, "<axis xyz=\"0 0 1\"/>",
-                             "<axis xyz=\"0 0 1\"/><calibration rising=\"0.25\"/>"));
+  EXPECT_EQ(patch.files[0].text, with(kXacro, "<axis xyz=\"0 0 1\"/>",
+                                      "<axis xyz=\"0 0 1\"/><calibration rising=\"0.25\"/>"));
 }
 
 TEST(PatchXacro, PatchingAgainChangesNothing) {
   const std::vector<JointPatch> patches = {shifted("left_pan", 0.5)};
-  const std::string once = patched(patches).text;
-  const XacroPatch again = patch_xacro(once, "arm.xacro", kUrdf, calibrated(patches));
-  EXPECT_EQ(again.text, once);
-  EXPECT_THAT(again.patched, ElementsAre("left_pan"));
-  const std::string rising = patched({{"left_pan", 0.25, {}}}, OffsetStyle::rising).text;
-  EXPECT_EQ(patch_xacro(rising, "arm.xacro", kUrdf,
+  const std::string once = patched(patches).files[0].text;
+  const XacroPatch again = patch_xacro({{"arm.xacro", once}}, kUrdf, calibrated(patches));
+  EXPECT_EQ(again.files[0].text, once);
+  EXPECT_THAT(again.files[0].patched, ElementsAre("left_pan"));
+  const std::string rising = patched({{"left_pan", 0.25, {}}}, OffsetStyle::rising).files[0].text;
+  EXPECT_EQ(patch_xacro({{"arm.xacro", rising}}, kUrdf,
                         calibrated({{"left_pan", 0.25, {}}}, OffsetStyle::rising))
+                .files[0]
                 .text,
             rising);
 }
@@ -133,22 +134,59 @@ TEST(PatchXacro, AMacroOfSeveralJointsIsNamed) {
 }
 
 TEST(PatchXacro, AnotherNumberThanInTheUrdfIsNamed) {
-  const XacroPatch patch = patch_xacro(with(kXacro, "0 0   0.10", "0 0 0.2"), "arm.xacro", kUrdf,
-                                       calibrated({shifted("left_pan", 0.5)}));
+  const XacroPatch patch = patch_xacro({{"arm.xacro", with(kXacro, "0 0   0.10", "0 0 0.2")}},
+                                       kUrdf, calibrated({shifted("left_pan", 0.5)}));
   EXPECT_THAT(patch.unpatched,
               ElementsAre(HasSubstr("xyz=\"0 0 0.2\" is not the number in the URDF")));
 }
 
-TEST(PatchXacro, AJointOfAnotherFileIsNamed) {
-  const XacroPatch patch = patch_xacro("<robot xmlns:xacro='http://www.ros.org/wiki/xacro'/>",
-                                       "top.xacro", kUrdf, calibrated({shifted("left_pan", 0.5)}));
-  EXPECT_THAT(patch.unpatched, ElementsAre(StartsWith("top.xacro: no joint 'left_pan'; it may be "
-                                                      "in a file that this one includes")));
+TEST(PatchXacro, AMimicIsPatchedLikeOtherNumbers) {
+  const std::string urdf =
+      "<robot name='r'><link name='a'/><link name='b'/><link name='c'/>"
+      "<joint name='j' type='continuous'><parent link='a'/><child link='b'/></joint>"
+      "<joint name='k' type='continuous'><parent link='b'/><child link='c'/>"
+      "<mimic joint='j' multiplier='2'/></joint></robot>";
+  const std::string after = patch_urdf(urdf, "r.urdf", parse_urdf(urdf, "r.urdf"),
+                                       {{"k", 0.0, {}, 0.5, 0.25}}, OffsetStyle::rising);
+  const XacroPatch patch = patch_xacro({{"r.xacro", urdf}}, urdf, after);
+  EXPECT_EQ(patch.files[0].text, after);
+  EXPECT_THAT(patch.files[0].text, HasSubstr("<mimic joint='j' multiplier='2.5' offset='0.25'/>"));
+}
+
+constexpr const char* kTop = "<robot name='arm' xmlns:xacro='http://www.ros.org/wiki/xacro'/>";
+
+TEST(PatchXacro, AJointOfNoFileIsNamed) {
+  const std::string after = calibrated({shifted("left_pan", 0.5)});
+  EXPECT_THAT(patch_xacro({{"top.xacro", kTop}}, kUrdf, after).unpatched,
+              ElementsAre(StartsWith("top.xacro: no joint 'left_pan'; it should get xyz=")));
+  EXPECT_THAT(
+      patch_xacro({{"top.xacro", kTop}, {"b.xacro", kTop}}, kUrdf, after).unpatched,
+      ElementsAre(StartsWith("top.xacro: no joint 'left_pan', nor in the files that it includes")));
+}
+
+TEST(PatchXacro, AJointOfAnIncludedFileIsPatchedThere) {
+  const XacroPatch patch = patch_xacro({{"top.xacro", kTop}, {"arm.xacro", kXacro}}, kUrdf,
+                                       calibrated({shifted("left_pan", 0.5)}));
+  ASSERT_EQ(patch.files.size(), 2u);
+  EXPECT_EQ(patch.files[0].text, kTop);
+  EXPECT_EQ(patch.files[1].name, "arm.xacro");
+  EXPECT_EQ(patch.files[1].text, with(kXacro, "0 0   0.10", "0 0   0.6"));
+  EXPECT_THAT(patch.files[1].patched, ElementsAre("left_pan"));
+  EXPECT_THAT(patch.unpatched, IsEmpty());
+}
+
+TEST(PatchXacro, AJointOfTwoFilesIsNamedWithBoth) {
+  const XacroPatch patch = patch_xacro({{"a.xacro", kXacro}, {"b.xacro", kXacro}}, kUrdf,
+                                       calibrated({shifted("left_pan", 0.5)}));
+  EXPECT_EQ(patch.files[0].text, kXacro);
+  EXPECT_THAT(patch.unpatched,
+              ElementsAre(StartsWith(
+                  "a.xacro:7, b.xacro:7: several joints that may be 'left_pan'; it should get")));
 }
 
 TEST(PatchXacro, WhatIsNotXacroIsAnError) {
-  EXPECT_THROW((void)patch_xacro("<a/>", "a.xacro", kUrdf, kUrdf), InputError);
-  EXPECT_THROW((void)patch_xacro("", "a.xacro", kUrdf, kUrdf), InputError);
+  EXPECT_THROW((void)patch_xacro({{"a.xacro", "<a/>"}}, kUrdf, kUrdf), InputError);
+  EXPECT_THROW((void)patch_xacro({{"a.xacro", ""}}, kUrdf, kUrdf), InputError);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Columns of tables by their names and values, and what is refused rather than guessed.
 #include "kinecal/tools/init/proposed_columns.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -73,6 +74,37 @@ TEST(ProposedColumns, HaveUnitsByNamesElseByValues) {
       columns_of("q1,q2,q3,q4,q5,q6,x,y,z\n90,2,3,4,5,6,1000,2,3\n90,2,3,4,5,6,1000,2,3\n");
   EXPECT_THAT(by_values, AllOf(HasSubstr("unit: degrees  # by its values, up to 90\n"),
                                HasSubstr("unit: millimetres  # by its values, up to 1000\n")));
+}
+
+TEST(ProposedColumns, AreVelocitiesOfAllJoints) {
+  const auto table = [](const std::string& names, const std::string& values = kSix) {
+    const std::string row = std::string(kSix) + "," + values + ",1,2,3\n";
+    return "q1,q2,q3,q4,q5,q6," + names + ",x,y,z\n" + row + row;
+  };
+  const std::string text = columns_of(table("dq1,dq2,dq3,dq4,dq5,dq6"));
+  EXPECT_THAT(text, HasSubstr("\nvelocities:\n  unit: rad/s  # like the positions; the header does "
+                              "not say\n  columns:\n    shoulder_pan_joint: dq1\n"));
+  EXPECT_THAT(text, AllOf(HasSubstr("wrist_3_joint: dq6\n"), Not(HasSubstr("Not used"))));
+  EXPECT_THAT(
+      columns_of(table("qd1 [deg/s],qd2 [deg/s],qd3 [deg/s],qd4 [deg/s],qd5 [deg/s],"
+                       "qd6 [deg/s]")),
+      AllOf(HasSubstr("unit: deg/s\n"), HasSubstr("shoulder_pan_joint: \"qd1 [deg/s]\"\n")));
+  EXPECT_THAT(columns_of(table("dq1,dq2,dq3,dq4,dq5,dq6", "1,2,3,4,5,nan")),
+              AllOf(Not(HasSubstr("velocities")), HasSubstr("# Not used: dq1, dq2")))
+      << "a row without a velocity would be an error";
+}
+
+TEST(ProposedColumns, AreVelocitiesByNamesOfJoints) {
+  std::string header, row;
+  for (const char* joint : {"shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2"}) {
+    header += fmt::format("{0}_joint,{0}_velocity,", joint);
+    row += "90,1,";
+  }
+  const std::string rows = row + "90,1,1,2,3\n" + row + "90,1,1,2,3\n";
+  const std::string text = columns_of(header + "wrist_3_joint,wrist_3_vel,x,y,z\n" + rows);
+  EXPECT_THAT(text, AllOf(HasSubstr("unit: deg/s  # like the positions"),
+                          HasSubstr("shoulder_pan_joint: shoulder_pan_velocity\n"),
+                          HasSubstr("wrist_3_joint: wrist_3_vel\n")));
 }
 
 TEST(ProposedColumns, ArePointsOfTheTrackerNotOfTheController) {

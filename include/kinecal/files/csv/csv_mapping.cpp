@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/files/csv/csv_mapping.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "kinecal/files/csv/csv_observation.ipp"
 #include "kinecal/files/yaml/config_map.ipp"
@@ -13,26 +18,57 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// `joints:` or `sliding:`
-void read_csv_joints(ConfigMap& map, const std::string& key, bool angle, CsvMapping& mapping) {
+/// `joints:`, `sliding:` or the velocities of either
+void read_csv_joints(ConfigMap& map, const std::string& key, const CsvUnitNames& units,
+                     std::vector<CsvJoint>& all) {
   auto joints = map.map(key, key);
   if (!joints) return;
-  note_csv_unit(*joints, angle);
-  const CsvUnit unit = read_csv_unit(*joints, angle);
+  note_csv_unit(*joints, units);
+  const CsvUnit unit = read_csv_unit(*joints, units);
   auto columns = joints->map("columns", key + ": columns");
   if (!columns)
     joints->error(joints->place(), "columns is missing: {name of a joint: column, ...}");
   if (columns) {
     for (const ConfigEntry& entry : columns->entries()) {
-      for (const CsvJoint& known : mapping.joints) {
+      for (const CsvJoint& known : all) {
         if (known.name == entry.key) {
           columns->error(entry.place, "joint '" + entry.key + "' occurs twice");
         }
       }
-      mapping.joints.push_back({entry.key, read_csv_sum(*columns, entry.value, entry.place), unit});
+      all.push_back({entry.key, read_csv_sum(*columns, entry.value, entry.place), unit});
     }
   }
   joints->report_unknown();
+}
+
+/// `velocities:` and `sliding_velocities:`, in the order of the joints: of all or of none
+void read_csv_velocities(ConfigMap& file, CsvMapping& mapping) {
+  std::vector<CsvJoint> velocities;
+  read_csv_joints(file, "velocities", kAngularSpeeds, velocities);
+  read_csv_joints(file, "sliding_velocities", kSpeeds, velocities);
+  if (velocities.empty()) return;
+  const ConfigEntry* first = file.peek("velocities");
+  const SourceLocation place = (first != nullptr ? first : file.peek("sliding_velocities"))->place;
+  std::vector<std::string> missing;
+  for (const CsvJoint& joint : mapping.joints) {
+    const auto found = std::find_if(velocities.begin(), velocities.end(),
+                                    [&](const CsvJoint& v) { return v.name == joint.name; });
+    if (found == velocities.end()) {
+      missing.push_back("'" + joint.name + "'");
+      continue;
+    }
+    mapping.velocities.push_back(std::move(*found));
+    velocities.erase(found);
+  }
+  if (!missing.empty()) {
+    file.error(place, fmt::format("velocities: no column for joint{} {}; give all joints or none",
+                                  missing.size() == 1 ? "" : "s", fmt::join(missing, ", ")));
+  }
+  for (const CsvJoint& velocity : velocities) {
+    const SourceLocation where = velocity.columns.empty() ? place : velocity.columns.front().place;
+    file.error(where, fmt::format("velocities: joint '{}' has no position under joints or sliding",
+                                  velocity.name));
+  }
 }
 
 /// `conditions:`
@@ -51,8 +87,9 @@ void read_csv_conditions(ConfigMap& file, CsvMapping& mapping) {
   mapping.separator = separator == "comma" ? ',' : separator == "tab" ? '\t' : ' ';
   if (separator == "semicolon") mapping.separator = ';';
   mapping.header = file.flag("header", true);
-  read_csv_joints(file, "joints", true, mapping);
-  read_csv_joints(file, "sliding", false, mapping);
+  read_csv_joints(file, "joints", kAngles, mapping.joints);
+  read_csv_joints(file, "sliding", kLengths, mapping.joints);
+  read_csv_velocities(file, mapping);
   read_csv_conditions(file, mapping);
   for (const ConfigEntry& entry : file.list("observations")) {
     if (auto map = file.map(entry, "observation")) read_csv_observation(*map, mapping);

@@ -5,6 +5,9 @@
 //   joints:
 //     unit: degrees                 # radians (default) or degrees; metres or millimetres for
 //     columns: {joint_1: q1, ...}   #   prismatic joints: sliding: {unit: ..., columns: ...}
+//   velocities:                     # of all joints or of none
+//     unit: deg/s                   # rad/s (default) or deg/s; m/s or mm/s for prismatic joints:
+//     columns: {joint_1: dq1, ...}  #   sliding_velocities: {unit: ..., columns: ...}
 //   conditions: {temperature: t_air}   # numbers that come with each sample, in units of your own
 //   observations:
 //    - sensor: arm
@@ -51,11 +54,11 @@ struct CsvUnit {
   bool millimetres = false;  ///< else metres
 };
 
-/// The position of one joint in every sample.
+/// The position or the velocity of one joint in every sample.
 struct CsvJoint {
   std::string name;  ///< of the joint in the URDF
-  CsvSum columns;    ///< whose sum is its position
-  CsvUnit unit;      ///< of the columns
+  CsvSum columns;    ///< whose sum it is
+  CsvUnit unit;      ///< of the columns; per second for a velocity
 };
 
 /// A condition of every sample: a temperature, a load.
@@ -81,6 +84,7 @@ struct CsvMapping {
   char separator = ',';                      ///< between cells; ' ' for one or more blanks
   bool header = true;                        ///< the first row names the columns
   std::vector<CsvJoint> joints;              ///< positions in every sample
+  std::vector<CsvJoint> velocities;          ///< of all joints, in their order; or empty
   std::vector<CsvCondition> conditions;      ///< of every sample
   std::vector<CsvObservation> observations;  ///< of every sample
 };

@@ -31,17 +31,26 @@ namespace kinecal::detail {
   return sum;
 }
 
-/// A unit of angle or length.
-[[nodiscard]] inline CsvUnit read_csv_unit(ConfigMap& map, bool angle) {
-  const std::string unit = angle ? read_choice(map, "unit", "radians", {"radians", "degrees"})
-                                 : read_choice(map, "unit", "metres", {"metres", "millimetres"});
-  return {unit == "degrees", unit == "millimetres"};
+/// The two units that a key of columns.yaml may have.
+struct CsvUnitNames {
+  const char *si, *other;
+  CsvUnit meaning;  ///< of the other
+};
+
+inline constexpr CsvUnitNames kAngles{"radians", "degrees", {true, false}};
+inline constexpr CsvUnitNames kLengths{"metres", "millimetres", {false, true}};
+inline constexpr CsvUnitNames kAngularSpeeds{"rad/s", "deg/s", {true, false}};
+inline constexpr CsvUnitNames kSpeeds{"m/s", "mm/s", {false, true}};
+
+[[nodiscard]] inline CsvUnit read_csv_unit(ConfigMap& map, const CsvUnitNames& names) {
+  const std::string unit = read_choice(map, "unit", names.si, {names.si, names.other});
+  return unit == names.other ? names.meaning : CsvUnit{};
 }
 
 /// Notes the unit that is taken if none is given: it decides the scale.
-inline void note_csv_unit(const ConfigMap& map, bool angle) {
+inline void note_csv_unit(const ConfigMap& map, const CsvUnitNames& names) {
   if (map.peek("unit") != nullptr) return;
-  map.note(map.place(), angle ? "unit is not given: radians" : "unit is not given: metres");
+  map.note(map.place(), fmt::format("unit is not given: {}", names.si));
 }
 
 /// `points:` (three columns each) or `pixels:` (two)
@@ -151,8 +160,8 @@ inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {
   if (!observation.sensor.empty()) map.set_subject("sensor '" + observation.sensor + "'");
   read_csv_frame(map, observation);
   const bool has_pixels = map.peek("pixels") != nullptr;
-  if (map.peek("points") != nullptr) note_csv_unit(map, false);
-  if (!has_pixels) observation.unit = read_csv_unit(map, false);
+  if (map.peek("points") != nullptr) note_csv_unit(map, kLengths);
+  if (!has_pixels) observation.unit = read_csv_unit(map, kLengths);
   read_csv_constant(map, observation);
   read_csv_points(map, "points", 3, observation);
   read_csv_points(map, "pixels", 2, observation);

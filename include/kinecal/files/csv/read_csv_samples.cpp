@@ -34,6 +34,7 @@ class CsvSamples {
         file_(std::move(file)),
         diagnostics_(diagnostics) {
     for (const CsvJoint& joint : mapping.joints) joints_.push_back(find(joint.columns));
+    for (const CsvJoint& joint : mapping.velocities) velocities_.push_back(find(joint.columns));
     for (const CsvCondition& condition : mapping.conditions) {
       conditions_.push_back(find(condition.columns));
     }
@@ -66,6 +67,7 @@ class CsvSamples {
       sample.joint_names.push_back(joint.name);
       sample.joint_positions.push_back(q);
     }
+    if (complete) add_velocities(row, sample);
     for (std::size_t i = 0; i < conditions_.size(); ++i) {
       sample.conditions[mapping_.conditions[i].name] = value(row, conditions_[i], {});
     }
@@ -88,6 +90,23 @@ class CsvSamples {
  private:
   static constexpr std::size_t kReported = 20;  ///< bad cells, one by one
   using Indices = std::vector<std::pair<std::size_t, const CsvColumn*>>;
+
+  /// A missing velocity is an error: NaN would silently reach the models that use it.
+  void add_velocities(const CsvRow& row, Sample& sample) {
+    for (std::size_t i = 0; i < velocities_.size(); ++i) {
+      const CsvJoint& joint = mapping_.velocities[i];
+      const double v = value(row, velocities_[i], joint.unit);
+      if (std::isnan(v)) {
+        bad_cell(row, joint.columns.front(),
+                 fmt::format("has no velocity of joint '{}'; every row needs one", joint.name));
+      }
+      if (!joint.unit.degrees && !joint.unit.millimetres) {
+        doubt(row, "the velocity of joint '" + joint.name + "'", v, 4.0 * std::numbers::pi,
+              "rad/s or m/s");
+      }
+      sample.joint_velocities.push_back(v);
+    }
+  }
 
   /// Adds the features of one entry to the observation of its sensor.
   /// @param next  index in points_ of its first number; advanced past its last one
@@ -195,7 +214,7 @@ class CsvSamples {
   std::string file_;
   Diagnostics& diagnostics_;
   /// In the order of the mapping.
-  std::vector<Indices> joints_, conditions_, frames_, ids_, points_;
+  std::vector<Indices> joints_, velocities_, conditions_, frames_, ids_, points_;
   std::size_t bad_cells_ = 0;
   std::set<std::string> doubted_;  ///< joints and sensors with a warning
 };

@@ -15,10 +15,16 @@ namespace kinecal {
 
 Recording read_recording(const std::string& path, Diagnostics& diagnostics, unsigned threads,
                          const ProgressMeter& meter) {
+  Recording recording = read_as_recorded(path, diagnostics, threads, meter);
+  set_joint_moves(recording.samples);
+  set_joint_velocities(recording.samples);
+  return recording;
+}
+
+Recording read_as_recorded(const std::string& path, Diagnostics& diagnostics, unsigned threads,
+                           const ProgressMeter& meter) {
   if (recording_format(path) == RecordingFormat::yaml) {
-    Recording recording{read_samples(path, diagnostics, threads, meter), {}};
-    set_joint_moves(recording.samples);
-    return recording;
+    return {read_samples(path, diagnostics, threads, meter), {}};
   }
   Recording recording;
   const std::size_t errors_before = diagnostics.errors.size();
@@ -42,7 +48,6 @@ Recording read_recording(const std::string& path, Diagnostics& diagnostics, unsi
   };
   read_bag(path, {wants, handle, meter}, diagnostics);
   recording.samples = samples.take(diagnostics);
-  set_joint_moves(recording.samples);
   if (number == 0 && diagnostics.errors.size() == errors_before) {
     diagnostics.error({path, 0},
                       "no messages of robot_calibration_msgs/CalibrationData in this bag; "

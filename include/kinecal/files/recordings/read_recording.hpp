@@ -19,11 +19,16 @@ struct Recording {
   std::string urdf;  ///< the last /robot_description; empty if there is none
 };
 
-/// Reads YAML, a ROS 1 bag, MCAP or a ROS 2 bag, identified by content.
+/// Reads YAML, a ROS 1 bag, MCAP or a ROS 2 bag, identified by content.  Sets Sample::joint_moves and,
+/// where no velocity was recorded, Sample::joint_velocities: samples/joint_moves.hpp.
 /// @param diagnostics  receives every error, also if there are no samples
 /// @param threads      like read_samples()
 /// @param meter        like read_samples()
 [[nodiscard]] Recording read_recording(const std::string& path, Diagnostics& diagnostics,
                                        unsigned threads = 0, const ProgressMeter& meter = {});
+
+/// Like read_recording(), but the samples have only what is in the file: to be copied.
+[[nodiscard]] Recording read_as_recorded(const std::string& path, Diagnostics& diagnostics,
+                                         unsigned threads = 0, const ProgressMeter& meter = {});
 
 }  // namespace kinecal

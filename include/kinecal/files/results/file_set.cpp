@@ -5,7 +5,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/files/results/file_set.hpp"
 
+#include <deque>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -46,6 +48,40 @@ void put_back(const std::filesystem::path& kept, const std::filesystem::path& fi
     std::filesystem::remove(file, ignored);
   }
 }
+
+/// Files of a folder, complete in its staging folder before they get their names.
+class StagedFiles {
+ public:
+  StagedFiles(std::filesystem::path folder, std::filesystem::path staging)
+      : folder_(std::move(folder)), staging_(std::move(staging)) {}
+
+  void stage(const std::vector<OutputFile>& files) {
+    for (const OutputFile& file : files) check_target(folder_ / file.name);
+    for (const OutputFile& file : files) {
+      write_durably(staging_ / file.name, file.content, folder_ / file.name);
+      names_.push_back(file.name);
+    }
+  }
+
+  /// @throws OutputError  some files may then have their names: put_back()
+  void place() {
+    for (const std::string& name : names_) {
+      keep_file(folder_ / name, staging_ / (name + kBefore));
+      rename_file(staging_ / name, folder_ / name);
+      placed_.push_back(name);
+    }
+  }
+
+  void put_back() const {
+    for (const std::string& name : placed_) {
+      detail::put_back(staging_ / (name + kBefore), folder_ / name);
+    }
+  }
+
+ private:
+  std::filesystem::path folder_, staging_;
+  std::vector<std::string> names_, placed_;
+};
 
 }  // namespace
 }  // namespace detail
@@ -90,23 +126,40 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::write(const std::vector<OutputFile>& files) {
-  for (const OutputFile& file : files) detail::check_target(folder_ / file.name);
   const detail::StagingFolder staging = stage();
-  for (const OutputFile& file : files) {
-    detail::write_durably(staging.path() / file.name, file.content, folder_ / file.name);
-  }
+  detail::StagedFiles staged(folder_, staging.path());
+  staged.stage(files);
   const detail::FolderLock lock(folder_);
-  std::vector<std::string> placed;
   try {
-    for (const OutputFile& file : files) {
-      detail::keep_file(folder_ / file.name, staging.path() / (file.name + detail::kBefore));
-      detail::rename_file(staging.path() / file.name, folder_ / file.name);
-      placed.push_back(file.name);
-    }
+    staged.place();
   } catch (const OutputError&) {
-    for (const std::string& name : placed) {
-      detail::put_back(staging.path() / (name + detail::kBefore), folder_ / name);
-    }
+    staged.put_back();
+    throw;
+  }
+}
+
+void write_file_sets(const std::vector<FileSet>& sets) {
+  std::map<std::filesystem::path, std::vector<OutputFile>> by_folder;  // in which to lock them
+  for (const FileSet& set : sets) {
+    std::error_code missing;
+    const auto folder = std::filesystem::weakly_canonical(set.folder, missing);
+    std::vector<OutputFile>& all = by_folder[missing ? set.folder : folder];
+    all.insert(all.end(), set.files.begin(), set.files.end());
+  }
+  std::deque<OutputFolder> folders;
+  std::deque<detail::StagingFolder> staging;
+  std::deque<detail::FolderLock> locks;
+  std::vector<detail::StagedFiles> staged;
+  for (const auto& [folder, files] : by_folder) {
+    folders.emplace_back(folder);
+    staging.emplace_back(folder);
+    staged.emplace_back(folder, staging.back().path()).stage(files);
+  }
+  for (const auto& [folder, files] : by_folder) locks.emplace_back(folder);
+  try {
+    for (detail::StagedFiles& of : staged) of.place();
+  } catch (const OutputError&) {
+    for (const detail::StagedFiles& of : staged) of.put_back();
     throw;
   }
 }

@@ -42,6 +42,16 @@ class OutputFolder {
   std::vector<std::filesystem::path> created_;
 };
 
+/// Files of one folder.
+struct FileSet {
+  std::filesystem::path folder;
+  std::vector<OutputFile> files;
+};
+
+/// Writes files of several folders completely or not at all; replaces files of the same name.
+/// @throws OutputError  naming the file; all folders are then unchanged
+void write_file_sets(const std::vector<FileSet>& sets);
+
 /// The folder of a file: "." for a name without one.
 [[nodiscard]] std::filesystem::path folder_of(const std::string& file);
 

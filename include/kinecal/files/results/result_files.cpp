@@ -13,6 +13,7 @@
 #include "kinecal/files/cameras/camera_info.hpp"
 #include "kinecal/files/results/result_text.ipp"
 #include "kinecal/files/yaml/yaml_text.hpp"
+#include "kinecal/parameters/joint_models.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal {
@@ -67,7 +68,12 @@ std::vector<JointPatch> joint_patches(const Robot& robot, const ParameterTable& 
       frame(static_cast<Eigen::Index>(axis)) = value(parameter_name(joint.name, kFrameAxes[axis]));
     }
     JointPatch patch{joint.name, moves(joint.type) && !joint.mimic ? value(joint.name) : 0.0, {}};
-    if (frame.isZero(0.0) && patch.offset == 0.0) continue;
+    if (joint.mimic) {
+      patch.mimic_multiplier = value(parameter_name(joint.name, MimicErrors::kParameters[0].name));
+      patch.mimic_offset = value(parameter_name(joint.name, MimicErrors::kParameters[1].name));
+    }
+    const bool mimics_as_before = patch.mimic_multiplier == 0.0 && patch.mimic_offset == 0.0;
+    if (frame.isZero(0.0) && patch.offset == 0.0 && mimics_as_before) continue;
     patch.correction = {exp(Vector3<double>(frame.tail<3>())), frame.head<3>()};
     patches.push_back(patch);
   }

@@ -32,10 +32,11 @@ namespace kinecal::detail {
                       : fmt::format("{}_{}{}", stem, date, ending);
 }
 
-/// "; q_true = q + this * sin(q)" of a parameter of a joint model, which no URDF can hold; else empty.
+/// "q_true = q + this * sin(q)" of a parameter of a joint model, and whether the URDF holds it; else empty.
 [[nodiscard]] inline std::string formula_text(const Robot& robot, const std::string& name) {
   const std::optional<JointModelParameter> of = joint_model_parameter(robot, name);
   if (!of || of->model->formula(of->part).empty()) return {};
+  if (fits_urdf(*of)) return "in <mimic> of the URDF";
   return fmt::format("q_true = q + this * {}", of->model->formula(of->part));
 }
 

@@ -22,7 +22,7 @@ struct JointNumbers {
   std::size_t size;
 };
 
-inline constexpr std::array<JointNumbers, 8> kPatchedNumbers = {
+inline constexpr std::array<JointNumbers, 10> kPatchedNumbers = {
     {{"origin", "xyz", 3},
      {"origin", "rpy", 3},
      {"limit", "lower", 1},
@@ -30,7 +30,9 @@ inline constexpr std::array<JointNumbers, 8> kPatchedNumbers = {
      {"safety_controller", "soft_lower_limit", 1},
      {"safety_controller", "soft_upper_limit", 1},
      {"calibration", "rising", 1},
-     {"calibration", "falling", 1}}};
+     {"calibration", "falling", 1},
+     {"mimic", "multiplier", 1},
+     {"mimic", "offset", 1}}};
 
 /// The values that a joint has after the calibration, and had before, where they differ.
 struct ChangedNumbers {

@@ -1,4 +1,4 @@
-// Edits of one joint in the text of a URDF or xacro file: origin, limits, calibration.
+// Edits of one joint in the text of a URDF or xacro file: origin, limits, calibration, mimic.
 //
 // Numbers are rewritten one by one, where they differ.  Missing elements or attributes are created
 // in the style of their neighbours, with the same quotes, indentation and line ends.
@@ -14,6 +14,7 @@
 #include "kinecal/files/urdf/urdf_text.ipp"
 #include "kinecal/geometry/pose.hpp"
 #include "kinecal/geometry/rpy.hpp"
+#include "kinecal/kinematics/joint.hpp"
 
 namespace kinecal::detail {
 
@@ -65,6 +66,20 @@ struct UrdfJointEditor {
     XmlTagEditor editor = tag_of(calibration);
     editor.set("rising", {&rising, 1});
     if (calibration.attribute("falling")) editor.set("falling", {&falling, 1});
+    editor.finish();
+  }
+
+  /// The numbers of <mimic>; those that do not change keep their text.
+  void set_mimic(const Mimic& to) {
+    const pugi::xml_node mimic = joint.child("mimic");
+    const auto value = [&](const char* name, double missing) {
+      return mimic.attribute(name) ? source.numbers(mimic, name, 1, diagnostics)[0] : missing;
+    };
+    const double multiplier = value("multiplier", 1.0), offset = value("offset", 0.0);
+    source.throw_if_errors(diagnostics);
+    XmlTagEditor editor = tag_of(mimic);
+    if (to.multiplier != multiplier) editor.set("multiplier", {&to.multiplier, 1});
+    if (to.offset != offset) editor.set("offset", {&to.offset, 1});
     editor.finish();
   }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kinecal/files/urdf/joint_changes.ipp"
+#include "kinecal/files/urdf/mimic_changes.ipp"
 #include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
@@ -29,11 +30,16 @@ void check_patch(const UrdfText& source, const Robot& robot, const JointPatch& p
   if (!robot.has_joint(name)) {
     fail("joint '" + name + "' is not a joint of robot '" + robot.name() + "'");
   }
-  const bool finite = std::isfinite(patch.offset) && patch.correction.translation.allFinite() &&
+  const bool finite = std::isfinite(patch.offset) && std::isfinite(patch.mimic_multiplier) &&
+                      std::isfinite(patch.mimic_offset) &&
+                      patch.correction.translation.allFinite() &&
                       patch.correction.rotation.allFinite();
   if (!finite) fail("the calibration of joint '" + name + "' is not finite");
-  if (patch.offset == 0.0) return;
   const Joint& joint = robot.joint(name);
+  if (!joint.mimic && (patch.mimic_multiplier != 0.0 || patch.mimic_offset != 0.0)) {
+    fail("joint '" + name + "' does not mimic another: it has no <mimic> to correct");
+  }
+  if (patch.offset == 0.0) return;
   if (!moves(joint.type)) {
     fail("joint '" + name + "' is " + std::string(to_string(joint.type)) +
          ": it has no position to add an offset to");
@@ -68,28 +74,43 @@ std::string patch_urdf(const std::string& text, const std::string& name_for_mess
     return detail::decided_style(source, joint, style);
   };
   std::vector<detail::TextEdit> edits;
-  for (const auto& [name, change] : detail::urdf_joint_changes(robot, patches, style_of)) {
+  const auto mimics = detail::calibrated_mimics(robot, patches, style_of);
+  auto changes = detail::urdf_joint_changes(robot, patches, style_of);
+  for (const auto& [name, mimic] : mimics) changes[name];  // with it, or with it alone
+  for (const auto& [name, change] : changes) {
     const pugi::xml_node joint = source.joint(name);
     if (!joint) throw InputError(name_for_messages + ": no joint '" + name + "'");
     detail::edit_joint(source, joint, change, edits);
+    if (const auto found = mimics.find(name); found != mimics.end()) {
+      detail::UrdfJointEditor{source, joint, edits}.set_mimic(found->second);
+    }
     if (change.ros2_control == 0.0) continue;
     detail::add_ros2_control_offset(source, robot.joint(name), change.ros2_control, edits);
   }
   return detail::apply_edits(text, std::move(edits));
 }
 
+OffsetPlaces offset_places(const std::string& text, const std::string& name_for_messages,
+                           const Robot& robot, const std::vector<JointPatch>& patches) {
+  const detail::UrdfText source(text, name_for_messages);
+  OffsetPlaces places;
+  const auto joints = source.robot().children("joint");
+  places.has_calibration = std::any_of(joints.begin(), joints.end(), [](pugi::xml_node joint) {
+    return joint.child("calibration");
+  });
+  for (const JointPatch& patch : patches) {
+    if (patch.offset == 0.0) continue;
+    const OffsetStyle style =
+        detail::decided_style(source, robot.joint(patch.joint), OffsetStyle::as_read);
+    (style == OffsetStyle::rising ? places.rising : places.ros2_control).push_back(patch.joint);
+  }
+  return places;
+}
+
 bool goes_into_rising(const std::string& text, const std::string& name_for_messages,
                       const Robot& robot, const std::vector<JointPatch>& patches) {
-  const detail::UrdfText source(text, name_for_messages);
-  const auto joints = source.robot().children("joint");
-  if (std::any_of(joints.begin(), joints.end(),
-                  [](pugi::xml_node joint) { return joint.child("calibration"); })) {
-    return false;
-  }
-  return std::any_of(patches.begin(), patches.end(), [&](const JointPatch& patch) {
-    return patch.offset != 0.0 &&
-           !detail::has_ros2_control_offset(source, robot.joint(patch.joint));
-  });
+  const OffsetPlaces places = offset_places(text, name_for_messages, robot, patches);
+  return !places.has_calibration && !places.rising.empty();
 }
 
 std::map<std::string, double> ros2_control_offsets(const std::string& text,

@@ -8,11 +8,15 @@
 //   offset, OffsetStyle::origin  origin <- origin * correction * motion(axis, offset);
 //                                limits <- limits - offset
 //   offset, OffsetStyle::ros2_control  <param name="offset"> of the joint in <ros2_control> <- its value + offset
+//   mimic_multiplier, mimic_offset  <mimic multiplier="..." offset="..."> <- the URDF's + these
 //
 // The origin can hold the offset because motions along one axis add up: motion(offset) * motion(q) =
 // motion(q + offset).  A mimic joint moves with the joint it follows; folded into origins, the
 // offset reaches it as motion(axis, multiplier * offset).  Positions are then raw readings, so the limits
 // move by -offset: the same poses are allowed as with `rising`.
+//
+// Errors of a mimic joint are linear in the reading q of the joint that drives it.  Where published positions
+// include that joint's offset, p = q + offset, its <mimic offset> compensates: mimic_multiplier * (p - offset).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -28,9 +32,11 @@ namespace kinecal {
 
 /// The calibration of one joint.
 struct JointPatch {
-  std::string joint;             ///< its name in the URDF
-  double offset = 0.0;           ///< to be added to the measured position, radians or metres
-  Pose<double> correction = {};  ///< of the joint's frame, after its origin; metres
+  std::string joint;              ///< its name in the URDF
+  double offset = 0.0;            ///< to be added to the measured position, radians or metres
+  Pose<double> correction = {};   ///< of the joint's frame, after its origin; metres
+  double mimic_multiplier = 0.0;  ///< of a joint that mimics another: added to the URDF's
+  double mimic_offset = 0.0;      ///< the same, radians or metres
 };
 
 /// Where to write joint offsets.
@@ -53,6 +59,18 @@ enum class OffsetStyle {
 [[nodiscard]] std::string patch_urdf(const std::string& text, const std::string& name_for_messages,
                                      const Robot& robot, const std::vector<JointPatch>& patches,
                                      OffsetStyle style);
+
+/// Where OffsetStyle::as_read writes the offsets of joints.
+struct OffsetPlaces {
+  std::vector<std::string> ros2_control;  ///< joints whose offset goes to <param name="offset">
+  std::vector<std::string> rising;        ///< joints whose offset goes to <calibration rising>
+  bool has_calibration = false;           ///< the URDF has <calibration>: a program reads it
+};
+
+/// @param text  the URDF, like the other arguments as patch_urdf() takes them
+[[nodiscard]] OffsetPlaces offset_places(const std::string& text,
+                                         const std::string& name_for_messages, const Robot& robot,
+                                         const std::vector<JointPatch>& patches);
 
 /// True if OffsetStyle::as_read writes the first <calibration rising> of a URDF: its programs may not read it.
 /// @param text  the URDF, like the other arguments as patch_urdf() takes them

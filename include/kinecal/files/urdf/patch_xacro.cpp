@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <deque>
 #include <map>
 #include <utility>
 
@@ -14,7 +15,7 @@
 #include "kinecal/files/urdf/joint_editor.ipp"
 #include "kinecal/files/urdf/patch_urdf.hpp"
 #include "kinecal/files/urdf/urdf_text.ipp"
-#include "kinecal/files/urdf/xacro_joints.ipp"
+#include "kinecal/files/urdf/xacro_matches.ipp"
 
 namespace kinecal {
 
@@ -92,39 +93,6 @@ struct XacroJoint {
   }
 };
 
-/// The joints of a xacro file, and those of the URDF that each of them makes.
-class XacroMatches {
- public:
-  XacroMatches(const UrdfText& source, const UrdfText& urdf)
-      : source_(source), joints_(xacro_joints(source.robot())) {
-    for (const pugi::xml_node joint : urdf.robot().children("joint")) {
-      const auto found = joints_named(joints_, joint.attribute("name").value());
-      if (found.size() == 1) ++made_[source.offset(found.front())];
-    }
-  }
-
-  /// The element that makes only this joint; else a null node.
-  /// @param why  receives the reason
-  [[nodiscard]] pugi::xml_node only_for(const std::string& name, std::string& why) const {
-    const auto found = joints_named(joints_, name);
-    if (found.size() != 1) {
-      why = fmt::format("{}: {} '{}'; it may be in a file that this one includes", source_.file(),
-                        found.empty() ? "no joint" : "several joints that may be", name);
-      return {};
-    }
-    const int made = made_.at(source_.offset(found.front()));
-    if (made == 1) return found.front();
-    why = fmt::format("{}: joint '{}' is one of {} that this element makes",
-                      source_.place(found.front()).str(), name, made);
-    return {};
-  }
-
- private:
-  const UrdfText& source_;
-  std::vector<pugi::xml_node> joints_;
-  std::map<std::size_t, int> made_;  ///< joints of the URDF, by the place of the element
-};
-
 /// Names what changed in <ros2_control>, which is not patched.
 void name_ros2_control(const UrdfText& source, const std::string& original,
                        const std::string& calibrated, std::vector<std::string>& unpatched) {
@@ -140,30 +108,37 @@ void name_ros2_control(const UrdfText& source, const std::string& original,
 }  // namespace
 }  // namespace detail
 
-XacroPatch patch_xacro(const std::string& text, const std::string& name_for_messages,
-                       const std::string& original, const std::string& calibrated) {
-  const detail::UrdfText source(text, name_for_messages);
-  const detail::UrdfText before(original, "the URDF"), after(calibrated, "the calibrated URDF");
-  const detail::XacroMatches matches(source, before);
+XacroPatch patch_xacro(const std::vector<XacroFile>& files, const std::string& original,
+                       const std::string& calibrated) {
+  if (files.empty()) return {};
+  std::deque<detail::XacroSource> sources;  // which stay where they are
   XacroPatch patch;
-  std::vector<detail::TextEdit> edits;
+  for (const XacroFile& file : files) {
+    sources.emplace_back(file);
+    patch.files.push_back({file.name, file.text, {}});
+  }
+  const detail::UrdfText before(original, "the URDF"), after(calibrated, "the calibrated URDF");
+  const detail::XacroMatches matches(sources, before);
   for (const pugi::xml_node of_urdf : before.robot().children("joint")) {
     const std::string name = of_urdf.attribute("name").value();
     const auto changes = detail::changed_numbers(before, after, name);
     if (changes.empty()) continue;
     std::string why, all;
-    const pugi::xml_node joint = matches.only_for(name, why);
-    if (!joint) {
+    const detail::XacroElement element = matches.only_for(name, why);
+    if (!element.joint) {
       for (const auto& change : changes) all += (all.empty() ? "" : ", ") + change.text();
       patch.unpatched.push_back(why + "; it should get " + all);
       continue;
     }
     const std::size_t named = patch.unpatched.size();
-    detail::XacroJoint{source, joint, name, edits, patch.unpatched}.patch(changes);
-    if (patch.unpatched.size() == named) patch.patched.push_back(name);
+    detail::XacroSource& of = sources[element.file];
+    detail::XacroJoint{of.source, element.joint, name, of.edits, patch.unpatched}.patch(changes);
+    if (patch.unpatched.size() == named) patch.files[element.file].patched.push_back(name);
   }
-  detail::name_ros2_control(source, original, calibrated, patch.unpatched);
-  patch.text = detail::apply_edits(text, std::move(edits));
+  detail::name_ros2_control(sources.front().source, original, calibrated, patch.unpatched);
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    patch.files[i].text = detail::apply_edits(files[i].text, std::move(sources[i].edits));
+  }
   return patch;
 }
 

@@ -9,6 +9,7 @@
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/tools/init/proposed_joints.ipp"
 #include "kinecal/tools/init/proposed_points.ipp"
+#include "kinecal/tools/init/proposed_velocities.ipp"
 #include "kinecal/tools/init/robot_parts.hpp"
 #include "kinecal/tools/init/table_columns.ipp"
 
@@ -64,6 +65,31 @@ namespace {
   return fmt::format("\n{}:\n  {}\n  columns:\n{}", turning ? "joints" : "sliding", unit, text);
 }
 
+/// Velocities of the joints that turn or slide.  A unit that the header does not say is that of the
+/// positions, per second.
+[[nodiscard]] std::string velocities_text(const Robot& robot, const ReadTable& table,
+                                          const ColumnOfJoint& velocities, bool turning,
+                                          const std::string& joints) {
+  std::string text;
+  int first = -1;
+  for (const auto& [joint, column] : velocities) {
+    if (turns(robot.joint(joint).type) != turning) continue;
+    if (first < 0) first = column;
+    text += fmt::format("    {}: {}\n", name_to_yaml(joint), column_name(table, column));
+  }
+  if (first < 0) return "";
+  const NamedUnit named = table.columns[static_cast<std::size_t>(first)].unit;
+  const bool is_known = named != NamedUnit::none;
+  const NamedUnit other = turning ? NamedUnit::degrees : NamedUnit::millimetres;
+  const bool is_other =
+      is_known ? named == other
+               : joints.find(turning ? "unit: degrees" : "unit: millimetres") != std::string::npos;
+  const char* unit = turning ? (is_other ? "deg/s" : "rad/s") : (is_other ? "mm/s" : "m/s");
+  return fmt::format("\n{}:\n  unit: {}{}\n  columns:\n{}",
+                     turning ? "velocities" : "sliding_velocities", unit,
+                     is_known ? "" : "  # like the positions; the header does not say", text);
+}
+
 [[nodiscard]] std::string observations_text(const Robot& robot, const ReadTable& table,
                                             const std::vector<PointColumns>& points) {
   std::string held, measured;
@@ -103,6 +129,8 @@ std::string proposed_columns(const Robot& robot, std::string_view text, const st
   const ColumnOfJoint joints = proposed_joints(robot, table, file);
   std::set<int> taken;
   for (const auto& [joint, column] : joints) taken.insert(column);
+  const ColumnOfJoint velocities = proposed_velocities(robot, table, joints);
+  for (const auto& [joint, column] : velocities) taken.insert(column);
   const std::vector<PointColumns> points =
       table.header ? measured_points(table, taken, file) : std::vector{last_three(table)};
   for (const PointColumns& point : points) {
@@ -115,13 +143,16 @@ std::string proposed_columns(const Robot& robot, std::string_view text, const st
   }
   const std::map<char, const char*> separators = {
       {',', "comma"}, {';', "semicolon"}, {'\t', "tab"}, {' ', "space"}};
+  const std::string turning = joints_text(robot, table, joints, true),
+                    sliding = joints_text(robot, table, joints, false);
   return fmt::format(
              "{} by the table's {}: check it.\n"
              "separator: {}\nheader: {}\n",
              kProposedColumnsMark,
              table.header ? "header and values" : "number of columns and values",
              separators.at(table.separator), table.header) +
-         joints_text(robot, table, joints, true) + joints_text(robot, table, joints, false) +
+         turning + sliding + velocities_text(robot, table, velocities, true, turning) +
+         velocities_text(robot, table, velocities, false, sliding) +
          observations_text(robot, table, points) +
          (unused.empty() ? "" : "\n# Not used: " + unused + "\n");
 }

@@ -16,7 +16,8 @@ inline constexpr const char* kProposedColumnsMark = "# Columns for 'kinecal init
 /// values and not by names, such as units, is said in comments, and so is every column that is not used.
 ///
 /// Joints are recognised by their names in the URDF, with or without "_joint", "_pos", units; or as q1 q2 ..., j1, axis_1
-/// and the like, if an arm of the robot has as many.  Points are three columns x, y, z with a common rest of their names;
+/// and the like, if an arm of the robot has as many.  Velocities are dq1 dq2 ..., qd1, or joints' names with "_velocity",
+/// "_vel" or a unit per second; they are proposed if every joint has one in every row.  Points are three columns x, y, z with a common rest of their names;
 /// of several, those that are called after a tracker.  A table without a header has the joints of the arm, then x, y, z.
 /// @param robot  whose joints the columns hold
 /// @param table  the text

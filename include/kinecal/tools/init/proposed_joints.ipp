@@ -16,41 +16,78 @@
 
 namespace kinecal::detail {
 
-/// Columns named after joints of the URDF: "position.shoulder_pan_joint", "shoulder pan [deg]".
-[[nodiscard]] inline ColumnOfJoint joints_by_name(const Robot& robot, const ReadTable& table) {
-  const std::set<std::string> others = {
-      "velocity", "vel",     "effort",   "torque", "current",      "target", "command",
-      "cmd",      "desired", "setpoint", "error",  "acceleration", "acc",    "temperature"};
-  const auto is_rest = [&](const std::string& word) {
+/// Whether words are the name of a joint, with or without words such as "position".
+[[nodiscard]] inline bool names_joint(std::vector<std::string> words, const Joint& joint) {
+  if (words_of(joint.name) == words) return true;
+  const auto is_rest = [](const std::string& word) {
     return std::set<std::string>{"joint",     "joints", "state",  "states",   "position",
                                  "positions", "pos",    "actual", "measured", "angle",
                                  "q",         "j",      "axis",   "theta"}
         .contains(word);
   };
+  std::vector<std::string> name = words_of(joint.name);
+  std::erase(name, "joint");
+  if (name.empty()) return false;
+  std::erase(words, "joint");
+  const auto at = std::search(words.begin(), words.end(), name.begin(), name.end());
+  if (at == words.end()) return false;
+  words.erase(at, at + static_cast<std::ptrdiff_t>(name.size()));
+  return std::all_of(words.begin(), words.end(), is_rest);
+}
+
+/// Words of columns that are neither positions nor measured velocities.
+[[nodiscard]] inline bool is_other_quantity(const std::string& word) {
+  return std::set<std::string>{"effort",  "torque",       "current", "target",
+                               "command", "cmd",          "desired", "setpoint",
+                               "error",   "acceleration", "acc",     "temperature"}
+      .contains(word);
+}
+
+[[nodiscard]] inline bool is_velocity(const std::string& word) {
+  return std::set<std::string>{"velocity", "velocities", "vel", "speed", "dq", "qd", "qvel"}
+      .contains(word);
+}
+
+/// Columns named after joints of the URDF: "position.shoulder_pan_joint", "shoulder pan [deg]".
+[[nodiscard]] inline ColumnOfJoint joints_by_name(const Robot& robot, const ReadTable& table) {
   ColumnOfJoint all;
   for (const Joint& joint : robot.joints()) {
     if (!moves(joint.type) || joint.mimic) continue;
-    std::vector<std::string> name = words_of(joint.name);
-    std::erase(name, "joint");
-    if (name.empty()) continue;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
-      std::vector<std::string> words = table.columns[c].words;
-      if (!table.columns[c].is_number) continue;
-      if (std::any_of(words.begin(), words.end(),
-                      [&](const auto& word) { return others.contains(word); }))
-        continue;
-      if (words_of(joint.name) != words) {
-        std::erase(words, "joint");
-        const auto at = std::search(words.begin(), words.end(), name.begin(), name.end());
-        if (at == words.end()) continue;
-        words.erase(at, at + static_cast<std::ptrdiff_t>(name.size()));
-        if (!std::all_of(words.begin(), words.end(), is_rest)) continue;
-      }
+      const TableColumn& column = table.columns[c];
+      if (!column.is_number || column.per_second) continue;
+      const auto is_other = [](const std::string& word) {
+        return is_other_quantity(word) || is_velocity(word);
+      };
+      if (std::any_of(column.words.begin(), column.words.end(), is_other)) continue;
+      if (!names_joint(column.words, joint)) continue;
       all.emplace_back(joint.name, static_cast<int>(c));
       break;
     }
   }
   return all;
+}
+
+/// Columns of one of the names and a number, numbered from 0 or 1: name -> number -> column.
+/// @param is_usable  whether a column may be one of them
+[[nodiscard]] inline std::map<std::string, std::map<int, int>> numbered_columns(
+    const ReadTable& table, const std::set<std::string>& names,
+    bool (*is_usable)(const TableColumn&)) {
+  std::map<std::string, std::map<int, int>> numbered;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    std::vector<std::string> words = table.columns[c].words;
+    if (words.size() < 2 || words.back().size() > 2 || !is_usable(table.columns[c])) continue;
+    const auto number = csv_number(words.back());
+    words.pop_back();
+    const std::string name = fmt::format("{}", fmt::join(words, "_"));
+    if (number && names.contains(name))
+      numbered[name][static_cast<int>(*number)] = static_cast<int>(c);
+  }
+  std::erase_if(numbered, [](const auto& of) {  // 0 1 2 ... or 1 2 3 ...
+    const auto& [first, last] = std::pair(of.second.begin()->first, of.second.rbegin()->first);
+    return first > 1 || last - first + 1 != static_cast<int>(of.second.size());
+  });
+  return numbered;
 }
 
 /// Columns q1 q2 ..., of one name: in the order of the arm's joints.
@@ -74,19 +111,8 @@ namespace kinecal::detail {
                                        "qpos",
                                        "angle",
                                        "ax"};
-  std::map<std::string, std::map<int, int>> numbered;  // name -> number -> column
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    std::vector<std::string> words = table.columns[c].words;
-    if (words.size() < 2 || words.back().size() > 2 || !table.columns[c].is_number) continue;
-    const auto number = csv_number(words.back());
-    words.pop_back();
-    const std::string name = fmt::format("{}", fmt::join(words, "_"));
-    if (number && names.contains(name))
-      numbered[name][static_cast<int>(*number)] = static_cast<int>(c);
-  }
-  std::erase_if(numbered, [](const auto& of) {  // 0 1 2 ... or 1 2 3 ...
-    const auto& [first, last] = std::pair(of.second.begin()->first, of.second.rbegin()->first);
-    return first > 1 || last - first + 1 != static_cast<int>(of.second.size());
+  const auto numbered = numbered_columns(table, names, [](const TableColumn& column) {
+    return column.is_number && !column.per_second;
   });
   if (numbered.size() > 1) {
     throw InputError(

@@ -27,7 +27,9 @@ struct TableColumn {
   std::vector<std::string>
       words;  ///< of the name, small letters; digits at the end are a word of their own
   NamedUnit unit = NamedUnit::none;  ///< by the name
+  bool per_second = false;           ///< the unit is one of a velocity: "deg/s"
   bool is_number = false;            ///< most cells are
+  bool is_complete = false;          ///< every cell is a finite number
   double largest = 0.0;              ///< of the values' magnitudes
 
   /// All words, joined: "shoulder_pan_joint".
@@ -58,6 +60,18 @@ struct ReadTable {
     before = now;
   }
   return words;
+}
+
+/// Takes "per second" off the words of a name, if a unit stands before it: "dq 1 deg s".
+[[nodiscard]] inline bool take_per_second(std::vector<std::string>& words) {
+  std::size_t left = words.size();
+  if (left < 3 || (words[left - 1] != "s" && words[left - 1] != "sec")) return false;
+  left -= words[left - 2] == "per" ? 2 : 1;
+  const std::string& unit = words[left - 1];
+  if (unit != "deg" && unit != "\u00b0" && unit != "rad" && unit != "m" && unit != "mm")
+    return false;
+  words.resize(left);
+  return true;
 }
 
 /// Takes the unit off the words of a name.
@@ -148,6 +162,7 @@ struct ReadTable {
     TableColumn& column = table.columns.emplace_back();
     column.name = table.header ? first[c] : fmt::format("{}", c + 1);
     if (table.header) column.words = words_of(column.name);
+    column.per_second = take_per_second(column.words);
     column.unit = take_unit(column.words, fmt::format("{}: column '{}'", file, column.name));
     std::size_t numbers = 0;
     for (std::size_t r = table.header ? 1 : 0; r < rows.size(); ++r) {
@@ -157,6 +172,7 @@ struct ReadTable {
       ++numbers;
       column.largest = std::max(column.largest, std::abs(*value));
     }
+    column.is_complete = numbers == rows.size() - (table.header ? 1 : 0);
     column.is_number = 2 * numbers >= rows.size() - (table.header ? 1 : 0);
   }
   return table;
