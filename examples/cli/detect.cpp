@@ -234,17 +234,17 @@ std::set<std::string> sliding_joints(const std::optional<Robot>& robot) {
   return sliding;
 }
 
-/// "camera_lag, wrist_camera_lag": parameters of the cameras in samples.
+/// "camera_lag, board_lag": parameters of the sensors in samples, cameras first.
 std::string lags_of(const std::vector<Sample>& samples) {
-  std::set<std::string> names;
+  std::set<std::pair<bool, std::string>> sensors;
   for (const Sample& sample : samples) {
     for (const Observation& observation : sample.observations) {
-      if (observation.camera) names.insert(observation.sensor + "_lag");
+      sensors.emplace(!observation.camera, observation.sensor);
     }
   }
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "the lag of the camera" : text;
+  for (const auto& [is_other, name] : sensors) text += (text.empty() ? "" : ", ") + name + "_lag";
+  return text;
 }
 
 /// How fast the robot moved, and what a lag does at that speed.
@@ -265,8 +265,8 @@ void print_speed(const std::vector<Sample>& samples, const std::optional<Robot>&
     return;
   }
   say("the robot moved at {:.2f} rad/s in the median view, at most at {:.2f} rad/s; a lag of 1 ms "
-      "between joints and camera is {:.2g} mrad of the joints there: free {} (kinecal identify "
-      "does)\n",
+      "between joints and camera is {:.2g} mrad of the joints there: free that of what moves, {} "
+      "(kinecal identify does)\n",
       median, speeds.back(), median, lags_of(samples));
 }
 

@@ -122,7 +122,8 @@ TEST_F(DetectMotion, GivesSamplesWithVelocitiesAndTheLagOfTheCamera) {
   ASSERT_EQ(found.code, 0) << found.err;
   EXPECT_THAT(found.out, HasSubstr(" views: "));
   EXPECT_THAT(found.out, HasSubstr("the robot moved at 0.1"));
-  EXPECT_THAT(found.out, HasSubstr("mrad of the joints there: free camera_lag (kinecal identify"));
+  EXPECT_THAT(found.out,
+              HasSubstr("free that of what moves, camera_lag, board_lag (kinecal identify does)"));
   EXPECT_THAT(found.err, HasSubstr("0.mcap: left out "));
   EXPECT_THAT(found.err, Not(HasSubstr("single image")));
   const std::vector<Sample> seen = samples("samples.yaml");

@@ -101,7 +101,7 @@ TEST(SpeedLimit, InventsNoJitter) {
     EXPECT_LT(limit.jitter_most, 1e-3) << seed;
     if (limit.jitter == 0.0) EXPECT_THAT(limit.text(), HasSubstr("jitter by less than ")) << seed;
   }
-  EXPECT_LE(invented, 1) << "one in a hundred is chance";
+  EXPECT_EQ(invented, 0) << "one in a thousand is chance";
 }
 
 TEST(SpeedLimit, DoesNotTakeJointsThatDoNotRepeatForJitter) {

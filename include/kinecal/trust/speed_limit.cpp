@@ -83,11 +83,11 @@ struct MovingSample {
   constexpr std::size_t kFewest = 10;
   if (rates.size() < kFewest) return std::nullopt;
   const StampVariance variance = fit_stamp_variance(errors);
-  constexpr double kOneInHundred = 2.33, kOneInTwenty = 1.645;  // quantiles of chance
+  constexpr double kOneInThousand = 3.09, kOneInTwenty = 1.645;  // quantiles of chance
   SpeedLimit limit;
   limit.samples = static_cast<int>(moving.size());
   limit.jitter_most = std::sqrt(std::max(0.0, variance.jitter) + kOneInTwenty * variance.deviation);
-  if (variance.jitter > kOneInHundred * variance.deviation)
+  if (variance.jitter > kOneInThousand * variance.deviation)
     limit.jitter = std::sqrt(variance.jitter);
   limit.lag_deviation = deviation_of(rows, columns, moving, variance);
   for (const Sample& sample : samples) {

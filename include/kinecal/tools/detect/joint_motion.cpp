@@ -14,8 +14,9 @@ namespace kinecal::detail {
 namespace {
 
 constexpr std::size_t kFewestReadings = 4;
-constexpr std::chrono::milliseconds kHalfFit{60};      // usual
-constexpr std::chrono::milliseconds kFarthest{250};    // of the nearest reading before and after
+constexpr std::chrono::milliseconds kHalfFit{60};  // usual
+constexpr std::chrono::milliseconds kFarthestReading{
+    250};                                              // of the nearest reading before and after
 constexpr std::chrono::milliseconds kWidestFit{1000};  // of any reading
 
 /// First and last (excluded) index of the readings to fit; nullopt if there are too few.
@@ -25,7 +26,8 @@ constexpr std::chrono::milliseconds kWidestFit{1000};  // of any reading
   const auto not_before = std::lower_bound(stamps.begin(), stamps.end(), stamp);
   const auto after = std::upper_bound(stamps.begin(), stamps.end(), stamp);
   if (not_before == stamps.end() || after == stamps.begin()) return std::nullopt;
-  if (*not_before - stamp > kFarthest || stamp - *(after - 1) > kFarthest) return std::nullopt;
+  if (*not_before - stamp > kFarthestReading || stamp - *(after - 1) > kFarthestReading)
+    return std::nullopt;
   std::size_t first = index(std::lower_bound(stamps.begin(), stamps.end(), stamp - kHalfFit));
   std::size_t last = index(std::upper_bound(stamps.begin(), stamps.end(), stamp + kHalfFit));
   first = std::min(first, index(after) - 1);
