@@ -187,6 +187,40 @@ TEST_F(Intervals, OfSeveralCamerasGiveASampleOfEachStamp) {
   }
 }
 
+TEST_F(Intervals, OfDepthThatIsLaterThanTheImageAreRefused) {
+  finders_.front().type = "CheckerboardFinder";
+  for (const milliseconds later : {milliseconds(3), milliseconds(10)}) {
+    Recorder to(path(), Encoding::cdr);
+    for (milliseconds time{}; time <= milliseconds(2000); time += milliseconds(20)) {
+      const double seconds = std::chrono::duration<double>(time).count();
+      to.joints("/joint_states", {kTourStart + time, {"pan"}, {swinging(seconds)}});
+      CameraInfo camera;
+      camera.width = camera.height = 8;
+      camera.p = {8, 0, 4, 0, 0, 8, 4, 0, 0, 0, 1, 0};
+      to.camera_info("/left/camera_info", kTourStart + time, camera);
+      to.image("/left/image", kTourStart + time, GrayImage(8, 8, 100));
+      to.depth("/left/depth", kTourStart + time + later, Image<std::uint16_t>(8, 8, 1000));
+    }
+    to.finish();
+    for (const RecordedView& view : views_of(open(milliseconds(500)))) {
+      if (later < milliseconds(5)) {
+        EXPECT_TRUE(view.view) << view.refusal;
+      } else {
+        EXPECT_THAT(view.refusal,
+                    HasSubstr("of which topic 'left/depth' has the same within 5 ms"));
+      }
+    }
+    EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  }
+}
+
+TEST_F(Intervals, LongerThanTheRecordingGiveTheMiddleOfIt) {
+  record(swinging);
+  const auto views = views_of(open(std::chrono::minutes(1)));
+  ASSERT_EQ(views.size(), 1U);
+  EXPECT_NEAR(since_start(views[0].view.value().stamp), 2.0, 1e-6);
+}
+
 TEST_F(Intervals, WithoutImagesWhileJointsAreReadAreAnError) {
   finders_.push_back(capture_finder("right"));
   record(swinging, std::chrono::duration_cast<milliseconds>(std::chrono::hours(1)));

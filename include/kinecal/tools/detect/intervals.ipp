@@ -26,7 +26,7 @@ namespace kinecal::detail {
 }
 
 /// Intervals [begin, begin + every) from the first reading of a joint to the last, those in which a
-/// camera has a view.
+/// camera has a view.  The last one ends with the joints.
 [[nodiscard]] inline std::vector<Standstill> intervals_with_views(
     const RecordedSurvey& survey, const std::vector<ViewTopics>& cameras, Stamp every) {
   const auto joints = survey.joints.span();
@@ -41,7 +41,7 @@ namespace kinecal::detail {
   std::vector<Standstill> intervals;
   for (const std::int64_t number : numbers) {
     const Stamp begin = joints->begin + number * every;
-    intervals.push_back({begin, begin + every});
+    intervals.push_back({begin, std::min(begin + every, joints->end + Stamp(1))});
   }
   return intervals;
 }

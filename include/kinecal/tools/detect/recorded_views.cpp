@@ -108,6 +108,15 @@ void RecordedViews::read(const std::function<void(RecordedStandstill)>& handle,
   reader.finish();
 }
 
+std::string RecordedViews::nothing_in(const ViewTopics& topics) const {
+  const std::vector<std::string> parts = detail::parts_of(topics);
+  const std::string text = "topic '" + printable(parts.front()) + "' has nothing ";
+  if (!in_motion()) return text + "while the robot stands still";
+  if (parts.size() < 2) return text + "in this interval";
+  return text + "in this interval of which topic '" + printable(parts[1]) +
+         "' has the same within " + std::to_string(detail::kTogetherInMotion.count()) + " ms";
+}
+
 RecordedView RecordedViews::view(const RecordedStandstill& standstill, std::size_t camera) const {
   const ViewTopics& topics = cameras_.at(camera);
   std::optional<CameraInfo> settings = options_.camera;
@@ -115,8 +124,7 @@ RecordedView RecordedViews::view(const RecordedStandstill& standstill, std::size
     settings = survey_->topics.at(topics.camera_info).camera;
   }
   std::vector<View> views;
-  std::string failure = "topic '" + printable(detail::parts_of(topics).front()) + "' has nothing " +
-                        (in_motion() ? "in this interval" : "while the robot stands still");
+  std::string failure = nothing_in(topics);
   for (const auto& raw : standstill.views.at(camera)) {
     try {
       views.push_back(detail::decoded(*raw, topics, settings, options_.frame));

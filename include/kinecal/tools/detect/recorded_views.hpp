@@ -89,6 +89,8 @@ class RecordedViews {
  private:
   void choose_cameras(const std::vector<CaptureFinder>& finders, Diagnostics& diagnostics);
   [[nodiscard]] bool in_motion() const { return options_.every > Stamp{}; }
+  /// Why a camera has no view in a standstill or interval.
+  [[nodiscard]] std::string nothing_in(const ViewTopics& topics) const;
   /// A few candidate messages of a camera in a standstill, spread over its middle; of an interval,
   /// the one nearest to its middle.
   [[nodiscard]] std::vector<std::shared_ptr<detail::RawView>> planned(const Standstill& time,
