@@ -115,6 +115,7 @@ struct DetectOptions {
   std::vector<std::string> bags;      ///< recordings
   std::vector<std::string> joints;    ///< topics of joint states in recordings; empty: all
   std::vector<std::string> restless;  ///< joints that need not stand still in recordings
+  std::optional<double> every;        ///< seconds between views of a motion; nullopt: standstills
   std::string depth;        ///< folder of the images' depth, or topic of recordings; empty: none
   std::string camera;       ///< file; empty: none
   std::string urdf;         ///< file; empty: none

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -20,6 +21,7 @@
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
@@ -43,6 +45,15 @@ void check_options(const DetectOptions& options) {
   const bool has_links = !options.board_link.empty() || !options.camera_link.empty();
   if (has_links && options.urdf.empty()) {
     throw InputError("--board-link and --camera-link need the robot: --urdf");
+  }
+  constexpr double kShortest = 1e-3, kLongest = 3600.0;  // seconds
+  if (options.every && !(*options.every >= kShortest && *options.every <= kLongest)) {
+    throw InputError(fmt::format("--every takes 0.001 to 3600 seconds, is {}", *options.every));
+  }
+  if (options.every && !options.restless.empty()) {
+    throw InputError(
+        "--restless names joints that need not stand still in standstills; --every takes views "
+        "while the robot moves: leave one of them out");
   }
 }
 
@@ -130,6 +141,9 @@ void add_recordings(const DetectOptions& options, DetectionInput& task, Diagnost
     for (const std::string& topic : options.joints) {
       recording.joints.push_back(detail::plain_topic(topic));
     }
+    if (options.every) {
+      recording.every = std::chrono::round<Stamp>(std::chrono::duration<double>(*options.every));
+    }
     recording.restless.insert(options.restless.begin(), options.restless.end());
     if (options.images.empty()) recording.depth = options.depth;
     ProgressLine line;
@@ -210,6 +224,52 @@ std::string count_of_targets(const std::vector<Sample>& samples) {
   return text;
 }
 
+/// Joints that slide, if the robot is known.
+std::set<std::string> sliding_joints(const std::optional<Robot>& robot) {
+  std::set<std::string> sliding;
+  if (!robot) return sliding;
+  for (const Joint& joint : robot->joints()) {
+    if (joint.type == JointType::prismatic) sliding.insert(joint.name);
+  }
+  return sliding;
+}
+
+/// "camera_lag, board_lag": parameters of the sensors in samples, cameras first.
+std::string lags_of(const std::vector<Sample>& samples) {
+  std::set<std::pair<bool, std::string>> sensors;
+  for (const Sample& sample : samples) {
+    for (const Observation& observation : sample.observations) {
+      sensors.emplace(!observation.camera, observation.sensor);
+    }
+  }
+  std::string text;
+  for (const auto& [is_other, name] : sensors) text += (text.empty() ? "" : ", ") + name + "_lag";
+  return text;
+}
+
+/// How fast the robot moved, and what a lag does at that speed.
+void print_speed(const std::vector<Sample>& samples, const std::optional<Robot>& robot) {
+  const std::set<std::string> sliding = sliding_joints(robot);
+  std::vector<double> speeds;
+  for (const Sample& sample : samples) {
+    if (const auto speed = fastest_joint(sample, sliding)) speeds.push_back(*speed);
+  }
+  if (speeds.empty()) return;
+  std::sort(speeds.begin(), speeds.end());
+  const double median = speeds[speeds.size() / 2];
+  constexpr double kStands = 0.01;  // rad/s: a lag of 10 ms is 0.1 mrad
+  if (median < kStands) {
+    say("the robot stood in most views ({:.2g} rad/s in the median one): they say little about a "
+        "lag between joints and camera; record it while it moves at 0.1 to 0.3 rad/s\n",
+        median);
+    return;
+  }
+  say("the robot moved at {:.2f} rad/s in the median view, at most at {:.2f} rad/s; a lag of 1 ms "
+      "between joints and camera is {:.2g} mrad of the joints there: free that of what moves, {} "
+      "(kinecal identify does)\n",
+      median, speeds.back(), median, lags_of(samples));
+}
+
 void write(const DetectOptions& options, const std::vector<Sample>& samples) {
   const OutputFolder folder(folder_of(options.output));  // creates it if it is missing
   write_recording(options.output, samples,
@@ -243,9 +303,9 @@ int detect(const DetectOptions& options) {
   print_refusals(found.looks);
   print(turns);
   const std::size_t count = found.looks.size();
-  const std::string noun = options.bags.empty()     ? "image"
-                           : options.images.empty() ? "standstill"
-                                                    : "view";
+  const std::string noun = options.bags.empty()                       ? "image"
+                           : options.images.empty() && !options.every ? "standstill"
+                                                                      : "view";
   const std::string seen = counted(count, noun);
   const std::vector<Sample>& samples = found.samples;
   std::string sheets;
@@ -259,6 +319,7 @@ int detect(const DetectOptions& options) {
   say("wrote {}: {} of {}: {}; {} refused{}\n", options.output, found.used, seen,
       counted(found.features, "feature"), count - found.used, count_of_targets(samples));
   if (!sheets.empty()) say("wrote {}\n", sheets);
+  if (options.every) print_speed(samples, task.robot);
   return kDone;
 }
 

@@ -510,25 +510,32 @@ void add_detect(CLI::App& command, DetectOptions& options) {
   command.add_option("--columns", options.columns, "what the table's columns mean, as for convert")
       ->needs(poses)
       ->type_name("FILE");
-  command
-      .add_option(
-          "--bag", options.bags,
-          "recording of images or clouds, camera_info and joint states: ROS 1 bag, ROS 2 bag "
-          "or MCAP; each standstill of the robot gives a sample; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("FILE");
-  command
-      .add_option("--joints", options.joints,
-                  "topics of joint states in recordings, default: all of sensor_msgs/JointState")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("TOPIC");
+  CLI::Option* bag =
+      command
+          .add_option(
+              "--bag", options.bags,
+              "recording of images or clouds, camera_info and joint states: ROS 1 bag, ROS 2 bag "
+              "or MCAP; each standstill of the robot gives a sample; may be repeated")
+          ->allow_extra_args(false)
+          ->type_name("FILE");
   command
       .add_option("--restless", options.restless,
                   "joints that need not stand still in recordings, such as that of a scanner")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("JOINT");
+  command
+      .add_option("--every", options.every,
+                  "a sample each so many seconds of a slow motion instead of one of each "
+                  "standstill, with joint velocities, for the lag of a camera; 0.001 to 3600")
+      ->needs(bag)
+      ->type_name("SECONDS");
+  command
+      .add_option("--joints", options.joints,
+                  "topics of joint states in recordings, default: all of sensor_msgs/JointState")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("TOPIC");
   command
       .add_option("--camera", options.camera,
                   "camera_info, a file of Kalibr or OpenCV (file.yaml:cam1 for one of several); "

@@ -7,6 +7,7 @@
 #include "kinecal/tools/detect/detect.hpp"
 #include "kinecal/tools/detect/detect_all.hpp"
 #include "kinecal/tools/detect/image_folder.hpp"
+#include "kinecal/tools/detect/joint_motion.hpp"
 #include "kinecal/tools/detect/joint_track.hpp"
 #include "kinecal/tools/detect/joint_tracks.hpp"
 #include "kinecal/tools/detect/look.hpp"

@@ -38,6 +38,7 @@
 #include "kinecal/trust/repeat_noise.hpp"
 #include "kinecal/trust/residual_pattern.hpp"
 #include "kinecal/trust/ruined.hpp"
+#include "kinecal/trust/speed_limit.hpp"
 #include "kinecal/trust/uncertainty.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
 #include "kinecal/trust/workspace_map.hpp"

@@ -87,6 +87,7 @@ std::vector<Sample> samples_of(const MeasuredJoints& joints,
       Sample sample;
       sample.joint_names = joints.names;
       sample.joint_positions = joints.positions;
+      sample.joint_velocities = joints.velocities;
       sample.stamp = joints.stamp;
       to = samples.insert(samples.end(), std::move(sample));
     }

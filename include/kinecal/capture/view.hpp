@@ -20,9 +20,10 @@ using Stamp = std::chrono::nanoseconds;
 
 /// Joint positions at one moment.
 struct MeasuredJoints {
-  Stamp stamp{};                   ///< when they were measured
-  std::vector<std::string> names;  ///< of joints
-  std::vector<double> positions;   ///< radians or metres, in the order of the names
+  Stamp stamp{};                        ///< when they were measured
+  std::vector<std::string> names;       ///< of joints
+  std::vector<double> positions;        ///< radians or metres, in the order of the names
+  std::vector<double> velocities = {};  ///< rad/s or m/s, in the same order; empty: unknown
 
   /// Position of a joint, radians or metres; nullopt if it was not measured.
   [[nodiscard]] std::optional<double> position(const std::string& joint) const {

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 
@@ -41,6 +43,19 @@ inline void set_joint_moves(std::span<Sample> samples) {
       sample.joint_moves[i] = way.move;
     }
   }
+}
+
+/// Speed of the fastest joint of a sample, rad/s or m/s; nullopt if it has no velocities.
+/// @param left_out  joints that do not count, such as those that slide
+[[nodiscard]] inline std::optional<double> fastest_joint(
+    const Sample& sample, const std::set<std::string>& left_out = {}) {
+  std::optional<double> fastest;
+  for (std::size_t i = 0; i < sample.joint_names.size() && i < sample.joint_velocities.size();
+       ++i) {
+    if (left_out.count(sample.joint_names[i]) > 0) continue;
+    fastest = std::max(fastest.value_or(0.0), std::abs(sample.joint_velocities[i]));
+  }
+  return fastest;
 }
 
 /// Sets Sample::joint_velocities from neighbours in time, where a recording has none: the slope from

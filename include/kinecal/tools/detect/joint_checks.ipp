@@ -13,9 +13,10 @@
 namespace kinecal::detail {
 
 /// An error if stamps go back; a warning if joints were not measured throughout.
-/// @param all  from the first to the last reading of any joint
-inline void check_stamps(const JointTrack& track, const Standstill& all, const std::string& file,
-                         Diagnostics& diagnostics) {
+/// @param all        from the first to the last reading of any joint
+/// @param in_motion  whether views are taken while the robot moves
+inline void check_stamps(const JointTrack& track, const Standstill& all, bool in_motion,
+                         const std::string& file, Diagnostics& diagnostics) {
   const std::string about = "topic '" + printable(track.topic) + "': ";
   if (track.back) {
     diagnostics.error({file, 0},
@@ -31,8 +32,9 @@ inline void check_stamps(const JointTrack& track, const Standstill& all, const s
   diagnostics.warning(
       {file, 0}, about + "joints " + listed(track.names) + " were measured for " +
                      seconds_text(*last - *first) + " of " + seconds_text(all.end - all.begin) +
-                     ", and only then is it known that they stand still; name those "
-                     "that need not with --restless");
+                     (in_motion ? ", and only then are views used; choose topics with --joints"
+                                : ", and only then is it known that they stand still; name those "
+                                  "that need not with --restless"));
 }
 
 }  // namespace kinecal::detail

@@ -3,9 +3,16 @@
 #include "kinecal/tools/detect/joint_track.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace kinecal::detail {
+
+double unwrapped_step(double from, double to) {
+  const double step = to - from;
+  return std::abs(step) > std::numbers::pi ? std::remainder(step, 2.0 * std::numbers::pi) : step;
+}
 
 void JointTrack::add(Stamp stamp, const std::vector<double>& positions) {
   constexpr std::chrono::milliseconds kBin{10};
@@ -23,7 +30,7 @@ void JointTrack::add(Stamp stamp, const std::vector<double>& positions) {
   ++readings;
   stamps.back() += (stamp - stamps.back()) / readings;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    rows.back()[i] += (positions[i] - rows.back()[i]) / readings;
+    rows.back()[i] += unwrapped_step(rows.back()[i], positions[i]) / readings;
   }
 }
 

@@ -20,6 +20,9 @@ struct Standstill {
 
 namespace detail {
 
+/// The step between two readings, radians or metres; a joint that crosses +-pi makes no whole turn.
+[[nodiscard]] double unwrapped_step(double from, double to);
+
 /// Positions of the same joints over time, at most 100 per second; faster readings are averaged.
 struct JointTrack {
   std::string topic;               ///< of the messages

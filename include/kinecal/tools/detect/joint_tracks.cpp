@@ -7,9 +7,9 @@
 #include <map>
 #include <utility>
 
-#include "kinecal/text/nearest_name.hpp"
-#include "kinecal/text/printable.hpp"
 #include "kinecal/tools/detect/joint_checks.ipp"
+#include "kinecal/tools/detect/joint_choice.ipp"
+#include "kinecal/tools/detect/joint_motion.hpp"
 #include "kinecal/tools/detect/listed.ipp"
 
 namespace kinecal {
@@ -51,65 +51,8 @@ bool JointTracks::measures(const std::string& topic, const std::string& joint) c
   });
 }
 
-void JointTracks::choose_topics(const std::vector<std::string>& topics, const std::string& file,
-                                Diagnostics& diagnostics) {
-  std::set<std::string> known;
-  for (const detail::JointTrack& track : tracks_) known.insert(track.topic);
-  for (const std::string& topic : silent_) {
-    if (known.count(topic) > 0) continue;
-    diagnostics.warning({file, 0}, "topic '" + topic + "' has joint states without positions");
-  }
-  for (const auto& [joint, count] : not_finite_) {
-    diagnostics.warning({file, 0}, "topic '" + joint.first + "': the position of joint '" +
-                                       joint.second + "' is not a number in " +
-                                       std::to_string(count) + " messages");
-  }
-  for (const std::string& topic : topics) {
-    if (known.count(topic) > 0) continue;
-    diagnostics.error(
-        {file, 0}, "has no joint positions on topic '" + topic + "'" +
-                       did_you_mean(topic, std::vector<std::string>(known.begin(), known.end())));
-  }
-  std::erase_if(tracks_, [&](const detail::JointTrack& track) {
-    return !topics.empty() && std::find(topics.begin(), topics.end(), track.topic) == topics.end();
-  });
-  if (tracks_.empty() && diagnostics.errors.empty()) {
-    diagnostics.error({file, 0},
-                      "has no joint positions (sensor_msgs/JointState); record joint_states, too");
-  }
-}
-
-void JointTracks::settle_conflicts(const std::string& file, Diagnostics& diagnostics) {
-  std::map<std::string, std::set<std::string>> topics_of;
-  for (const detail::JointTrack& track : tracks_) {
-    for (const std::string& name : track.names) topics_of[name].insert(track.topic);
-  }
-  std::set<std::string> taken;
-  std::string conflict;
-  for (const auto& [joint, topics] : topics_of) {
-    if (topics.size() < 2) continue;
-    if (topics.count("joint_states") == 0) {
-      if (!conflict.empty()) continue;  // one example is enough
-      conflict = joint;
-      diagnostics.error({file, 0}, "joint '" + printable(joint) +
-                                       "' is on several topics: " + detail::listed(topics) +
-                                       "; choose those to use with --joints");
-    }
-    taken.insert(joint);
-  }
-  if (taken.empty() || !conflict.empty()) return;
-  diagnostics.notes.push_back(file + ": positions of " + detail::listed(taken) +
-                              " are taken from topic 'joint_states', although others have them");
-  for (detail::JointTrack& track : tracks_) {
-    if (track.topic == "joint_states") continue;
-    for (std::size_t i = 0; i < track.names.size(); ++i) {
-      if (taken.count(track.names[i]) > 0) track.used[i] = false;
-    }
-  }
-}
-
 void JointTracks::choose(const std::vector<std::string>& topics, const std::string& file,
-                         Diagnostics& diagnostics) {
+                         Diagnostics& diagnostics, bool in_motion) {
   choose_topics(topics, file, diagnostics);
   settle_conflicts(file, diagnostics);
   constexpr std::size_t kFewest = 4;
@@ -122,7 +65,7 @@ void JointTracks::choose(const std::vector<std::string>& topics, const std::stri
   });
   const std::optional<Standstill> all = span();
   for (detail::JointTrack& track : tracks_) {
-    detail::check_stamps(track, *all, file, diagnostics);
+    detail::check_stamps(track, *all, in_motion, file, diagnostics);
     track.sort();
   }
 }
@@ -178,6 +121,31 @@ MeasuredJoints JointTracks::positions(Stamp stamp, const Standstill& during) con
     }
   }
   return joints;
+}
+
+JointsInMotion JointTracks::motion(Stamp stamp) const {
+  MeasuredJoints joints;
+  joints.stamp = stamp;
+  std::vector<std::pair<std::string, std::string>> unknown;  // joint and topic
+  for (const detail::JointTrack& track : tracks_) {
+    const auto weights = detail::motion_weights(track, stamp);
+    for (std::size_t j = 0; j < track.names.size(); ++j) {
+      if (!track.used[j] || joints.position(track.names[j])) continue;
+      if (!weights) {
+        unknown.emplace_back(track.names[j], track.topic);
+        continue;
+      }
+      const detail::JointMotion motion = detail::motion_of(track, j, *weights);
+      joints.names.push_back(track.names[j]);
+      joints.positions.push_back(motion.position);
+      joints.velocities.push_back(motion.velocity);
+    }
+  }
+  for (const auto& [joint, topic] : unknown) {
+    if (joints.position(joint)) continue;
+    return {{}, detail::unknown_motion(joint, topic)};
+  }
+  return {std::move(joints), {}};
 }
 
 std::optional<Standstill> JointTracks::span() const {

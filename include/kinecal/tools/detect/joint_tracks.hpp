@@ -17,6 +17,12 @@
 
 namespace kinecal {
 
+/// Joints at a moment of a motion, or why they are not known.
+struct JointsInMotion {
+  MeasuredJoints joints;     ///< with velocities
+  std::string refusal = {};  ///< empty if they are known
+};
+
 /// The joints of a recording.
 class JointTracks {
  public:
@@ -30,8 +36,9 @@ class JointTracks {
   /// @param file    name of the recording in messages
   /// @param diagnostics  receives: no positions, a missing topic of `topics`, a joint on two
   ///                     topics, stamps that go back, joints with only a few measurements
+  /// @param in_motion    whether views are taken while the robot moves, for messages
   void choose(const std::vector<std::string>& topics, const std::string& file,
-              Diagnostics& diagnostics);
+              Diagnostics& diagnostics, bool in_motion = false);
 
   /// All standstills of at least options.window, sorted.
   /// @param restless  joints that need not stand still
@@ -46,6 +53,10 @@ class JointTracks {
 
   /// Mean positions of all joints near a moment of a standstill.
   [[nodiscard]] MeasuredJoints positions(Stamp stamp, const Standstill& during) const;
+
+  /// Positions and velocities of all joints at a moment, by a parabola through the readings within
+  /// 60 ms of it: at least 4, of which the nearest before and after it are within 0.25 s.
+  [[nodiscard]] JointsInMotion motion(Stamp stamp) const;
 
   /// From the first to the last reading; nullopt if there is none.
   [[nodiscard]] std::optional<Standstill> span() const;

@@ -3,6 +3,7 @@
 #include "kinecal/tools/detect/look.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <iterator>
 #include <mutex>
@@ -46,13 +47,21 @@ class ThreadFinders {
   std::vector<CameraFinders> finders_;  ///< of each thread
 };
 
-/// Adds observations of another camera at the same moment.
+/// Whether two samples are of one moment: within 0.1 ms, as cameras on one trigger are.
+[[nodiscard]] bool are_together(const Sample& a, const Sample& b) {
+  constexpr std::chrono::microseconds kTrigger{100};
+  return a.stamp == b.stamp ||
+         (a.stamp && b.stamp && std::chrono::abs(*a.stamp - *b.stamp) <= kTrigger);
+}
+
+/// Adds observations of another camera: to samples of the same moment, or as more samples.
 void join_observations(std::vector<Sample>& all, std::vector<Sample> more) {
   for (Sample& sample : more) {
     const auto is_free = [&](const Sample& other) {
-      return std::none_of(
-          sample.observations.begin(), sample.observations.end(),
-          [&](const Observation& o) { return other.observation(o.sensor) != nullptr; });
+      return are_together(other, sample) &&
+             std::none_of(
+                 sample.observations.begin(), sample.observations.end(),
+                 [&](const Observation& o) { return other.observation(o.sensor) != nullptr; });
     };
     const auto to = std::find_if(all.begin(), all.end(), is_free);
     if (to == all.end()) {
@@ -74,7 +83,7 @@ void join_observations(std::vector<Sample>& all, std::vector<Sample> more) {
   return thumbnail(GrayImage(kThumbnailWidth, kThumbnailWidth * 3 / 4, kGray), {}, name, reasons);
 }
 
-/// Looks at all views of one moment; the joints are those of the first.
+/// Looks at all views of one moment; the joints are those of the first, unless they move.
 /// @param source  of the samples, for messages
 [[nodiscard]] Look look_once(std::vector<RecordedView> views, const CameraFinders& finders,
                              const std::string& source, const std::string& name, bool thumbnails) {
@@ -87,7 +96,7 @@ void join_observations(std::vector<Sample>& all, std::vector<Sample> more) {
     Detection found;
     if (views[c].view) {
       View& view = *views[c].view;
-      if (joints != nullptr) view.joints = *joints;
+      if (joints != nullptr && !views[c].in_motion) view.joints = *joints;
       joints = &view.joints;
       found = detect(view, finders[c], source);
     } else {

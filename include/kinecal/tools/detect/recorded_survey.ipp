@@ -101,6 +101,14 @@ struct RecordedSurvey {
     }
   }
 
+  /// Sorts the views of each topic by stamps, after all messages were added.
+  void sort_views() {
+    for (auto& [name, topic] : topics) {
+      std::stable_sort(topic.views.begin(), topic.views.end(),
+                       [](const ViewStamp& a, const ViewStamp& b) { return a.stamp < b.stamp; });
+    }
+  }
+
  private:
   void take(Topic& topic, std::string_view type, const MessageFields& content,
             const ViewStamp& view) {

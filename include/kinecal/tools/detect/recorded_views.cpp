@@ -3,86 +3,18 @@
 #include "kinecal/tools/detect/recorded_views.hpp"
 
 #include <algorithm>
-#include <map>
 #include <stdexcept>
 #include <utility>
 
 #include "kinecal/files/recordings/read_bag.hpp"
+#include "kinecal/tools/detect/intervals.ipp"
 #include "kinecal/tools/detect/raw_view.ipp"
 #include "kinecal/tools/detect/recorded_checks.ipp"
 #include "kinecal/tools/detect/recorded_survey.ipp"
+#include "kinecal/tools/detect/standstill_reader.ipp"
 #include "kinecal/tools/detect/still_view.hpp"
 
 namespace kinecal {
-namespace detail {
-namespace {
-
-/// Second pass over a recording: delivers each standstill when all its messages were read.
-class StandstillReader {
- public:
-  StandstillReader(std::vector<RecordedStandstill> standstills,
-                   const std::function<void(RecordedStandstill)>& handle)
-      : standstills_(std::move(standstills)), handle_(handle), missing_(standstills_.size(), 0) {
-    for (std::size_t s = 0; s < standstills_.size(); ++s) {
-      for (const auto& camera : standstills_[s].views) {
-        for (const auto& view : camera) {
-          for (RawView::Part& part : view->parts) {
-            wanted_[part.topic].emplace(part.index, Place{s, &part});
-            ++missing_[s];
-          }
-        }
-      }
-    }
-  }
-
-  [[nodiscard]] bool wants(const BagTopic& topic) const {
-    return wanted_.count(topic.name) > 0 && RecordedSurvey::wants(topic);
-  }
-
-  void take(const BagMessage& message) {
-    const std::size_t index = count_[message.topic.name]++;
-    const auto [first, last] = wanted_[message.topic.name].equal_range(index);
-    for (auto at = first; at != last; ++at) {
-      const auto& [standstill, part] = at->second;
-      part->form = forms_.of(message.topic);
-      part->data.assign(message.data.begin(), message.data.end());
-      standstills_[standstill].bytes += part->data.size();
-      if (--missing_[standstill] == 0) give(standstill);
-    }
-  }
-
-  /// Delivers the rest: those without messages, and those that the recording has only in part.
-  void finish() {
-    for (std::size_t s = 0; s < standstills_.size(); ++s) {
-      if (!given_.count(s)) give(s);
-    }
-  }
-
- private:
-  struct Place {
-    std::size_t standstill;
-    RawView::Part* part;
-  };
-
-  void give(std::size_t s) {
-    given_.insert(s);
-    for (auto& camera : standstills_[s].views) {
-      std::erase_if(camera, [](const auto& view) { return !view->complete(); });
-    }
-    handle_(std::move(standstills_[s]));
-  }
-
-  std::vector<RecordedStandstill> standstills_;
-  const std::function<void(RecordedStandstill)>& handle_;
-  std::vector<std::size_t> missing_;  ///< messages of each standstill
-  std::set<std::size_t> given_;
-  std::map<std::string, std::multimap<std::size_t, Place>> wanted_;  ///< by topic and index
-  std::map<std::string, std::size_t> count_;                         ///< messages so far
-  MessageForms forms_;
-};
-
-}  // namespace
-}  // namespace detail
 
 RecordedViews::RecordedViews(RecordingOptions options, const std::vector<CaptureFinder>& finders,
                              Diagnostics& diagnostics, const ProgressMeter& meter)
@@ -91,13 +23,17 @@ RecordedViews::RecordedViews(RecordingOptions options, const std::vector<Capture
   const auto handle = [&](const BagMessage& message) { survey_->add(message, forms); };
   Diagnostics own;
   read_bag(options_.path, {detail::RecordedSurvey::wants, handle, meter}, own);
+  survey_->sort_views();
   if (own.errors.empty()) {
-    survey_->joints.choose(options_.joints, options_.path, own);
+    survey_->joints.choose(options_.joints, options_.path, own, in_motion());
     choose_cameras(finders, own);
     detail::report_messages(*survey_, cameras_, options_.path, own);
   }
   if (own.errors.empty()) detail::check_clocks(*survey_, cameras_, options_.path, own);
-  if (own.errors.empty()) times_ = detail::find_standstills(*survey_, options_, own);
+  if (own.errors.empty()) {
+    times_ = in_motion() ? detail::find_intervals(*survey_, cameras_, options_, own)
+                         : detail::find_standstills(*survey_, options_, own);
+  }
   for (const auto list :
        {&Diagnostics::errors, &Diagnostics::warnings, &Diagnostics::doubts, &Diagnostics::notes}) {
     auto& all = diagnostics.*list;
@@ -132,13 +68,16 @@ std::vector<std::shared_ptr<detail::RawView>> RecordedViews::planned(const Stand
                                                                      std::size_t camera) const {
   const std::vector<std::string> topics = detail::parts_of(cameras_[camera]);
   std::vector<std::shared_ptr<detail::RawView>> views;
-  const auto& main = survey_->topics.at(topics.front());
-  for (const detail::ViewStamp& stamp : detail::worth_a_look(main.views, time)) {
+  const auto& main = survey_->topics.at(topics.front()).views;
+  const Stamp together = in_motion() ? detail::kTogetherInMotion : detail::kTogether;
+  for (const detail::ViewStamp& stamp :
+       in_motion() ? detail::middle_view(main, time) : detail::worth_a_look(main, time)) {
     detail::RawView view{stamp.stamp, {}};
     view.parts.reserve(2);
     view.parts.push_back({topics.front(), stamp.index});
     if (topics.size() > 1) {
-      const auto* other = detail::companion(survey_->topics.at(topics[1]).views, stamp.stamp);
+      const auto* other =
+          detail::companion(survey_->topics.at(topics[1]).views, stamp.stamp, together);
       if (other == nullptr) continue;
       view.parts.push_back({topics[1], other->index});
     }
@@ -169,6 +108,15 @@ void RecordedViews::read(const std::function<void(RecordedStandstill)>& handle,
   reader.finish();
 }
 
+std::string RecordedViews::nothing_in(const ViewTopics& topics) const {
+  const std::vector<std::string> parts = detail::parts_of(topics);
+  const std::string text = "topic '" + printable(parts.front()) + "' has nothing ";
+  if (!in_motion()) return text + "while the robot stands still";
+  if (parts.size() < 2) return text + "in this interval";
+  return text + "in this interval of which topic '" + printable(parts[1]) +
+         "' has the same within " + std::to_string(detail::kTogetherInMotion.count()) + " ms";
+}
+
 RecordedView RecordedViews::view(const RecordedStandstill& standstill, std::size_t camera) const {
   const ViewTopics& topics = cameras_.at(camera);
   std::optional<CameraInfo> settings = options_.camera;
@@ -176,8 +124,7 @@ RecordedView RecordedViews::view(const RecordedStandstill& standstill, std::size
     settings = survey_->topics.at(topics.camera_info).camera;
   }
   std::vector<View> views;
-  std::string failure = "topic '" + printable(detail::parts_of(topics).front()) +
-                        "' has nothing while the robot stands still";
+  std::string failure = nothing_in(topics);
   for (const auto& raw : standstill.views.at(camera)) {
     try {
       views.push_back(detail::decoded(*raw, topics, settings, options_.frame));
@@ -186,6 +133,12 @@ RecordedView RecordedViews::view(const RecordedStandstill& standstill, std::size
     }
   }
   if (views.empty()) return {{}, failure};
+  if (in_motion()) {
+    JointsInMotion joints = survey_->joints.motion(views.front().stamp);
+    if (!joints.refusal.empty()) return {{}, std::move(joints.refusal)};
+    views.front().joints = std::move(joints.joints);
+    return {std::move(views.front()), {}, true, true};
+  }
   const StillView chosen = still_view(views);
   if (!chosen.refusal.empty()) return {{}, chosen.refusal};
   View& view = views[chosen.index];

@@ -1,8 +1,13 @@
-// Views of a recording, one for each standstill of the robot.
+// Views of a recording, one for each standstill of the robot, or one every few seconds while it
+// moves.
 //
 // The recording is read twice: first for joints and image times, which show when the robot stood
 // still; then for a few images of each standstill.  So memory holds the images of only a few
 // standstills, for any length of recording.
+//
+// While the robot moves, each interval gives the image nearest to its middle, with the positions and
+// velocities of the joints at its stamp: samples for the lag of a camera behind the joints.  Of an
+// interval in which nothing has moved since the last view, there is none.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -28,6 +33,8 @@ struct RecordingOptions {
   std::string frame = {};                 ///< of the camera; empty: from the messages
   std::optional<CameraInfo> camera = {};  ///< replaces camera_info, of the only camera
   SettleOptions settle = {};              ///< when joints stand still
+  Stamp every = {};  ///< length of the intervals that give a view each, whether the robot moves or
+                     ///< not; zero: each standstill gives one
 };
 
 namespace detail {
@@ -35,7 +42,7 @@ struct RecordedSurvey;
 struct RawView;
 }  // namespace detail
 
-/// A standstill, and messages of its views.
+/// A standstill or an interval, and messages of its views.
 struct RecordedStandstill {
   std::size_t number = 0;  ///< from 0, in the order of time
   std::string source;      ///< "drive.bag at 12.300 s": since the first joint states
@@ -49,6 +56,7 @@ struct RecordedView {
   std::optional<View> view = {};  ///< with the joints of its moment
   std::string refusal = {};       ///< empty if there is one
   bool compared = true;           ///< false: from a single image, which may have moved
+  bool in_motion = false;         ///< true: the robot may move, and other views see it elsewhere
 };
 
 /// A recording: see above.
@@ -63,7 +71,8 @@ class RecordedViews {
   RecordedViews(RecordedViews&&) noexcept;
   RecordedViews& operator=(RecordedViews&&) noexcept;
 
-  [[nodiscard]] std::size_t standstills() const { return times_.size(); }  ///< their number
+  /// Number of standstills, or of intervals.
+  [[nodiscard]] std::size_t standstills() const { return times_.size(); }
   /// Topics of each camera; finders that look through the same ones share it.
   [[nodiscard]] const std::vector<ViewTopics>& cameras() const { return cameras_; }
   /// The camera of a finder, by its place in the list.
@@ -74,12 +83,16 @@ class RecordedViews {
   void read(const std::function<void(RecordedStandstill)>& handle,
             const ProgressMeter& meter = {}) const;
 
-  /// The best view of a camera in a standstill.  Several threads may call it.
+  /// The best view of a camera in a standstill or interval.  Several threads may call it.
   [[nodiscard]] RecordedView view(const RecordedStandstill& standstill, std::size_t camera) const;
 
  private:
   void choose_cameras(const std::vector<CaptureFinder>& finders, Diagnostics& diagnostics);
-  /// A few candidate messages of a camera in a standstill, spread over its middle.
+  [[nodiscard]] bool in_motion() const { return options_.every > Stamp{}; }
+  /// Why a camera has no view in a standstill or interval.
+  [[nodiscard]] std::string nothing_in(const ViewTopics& topics) const;
+  /// A few candidate messages of a camera in a standstill, spread over its middle; of an interval,
+  /// the one nearest to its middle.
   [[nodiscard]] std::vector<std::shared_ptr<detail::RawView>> planned(const Standstill& time,
                                                                       std::size_t camera) const;
 
