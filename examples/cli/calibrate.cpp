@@ -106,13 +106,14 @@ void check_results(const ResultOptions& options) {
   const OutputFolder can_be_written(options.output);
 }
 
-ResultFileOptions file_options(const ResultOptions& options) {
+ResultFileOptions file_options(const ResultOptions& options, const Robot& robot) {
   ResultFileOptions files;
   const std::map<std::string, OffsetStyle> styles = {{"", OffsetStyle::as_read},
                                                      {"origin", OffsetStyle::origin},
                                                      {"rising", OffsetStyle::rising},
                                                      {"ros2_control", OffsetStyle::ros2_control}};
   files.offsets = styles.at(options.offsets);
+  files.in_servos = zeros_in_servos(options.robot_files, robot);
   if (options.upstream_names) {
     files.date = fmt::format("{:%Y_%m_%d_%H_%M_%S}", fmt::localtime(std::time(nullptr)));
   }
@@ -271,18 +272,23 @@ int calibrate(const CalibrateOptions& options) {
   if (!options.scene.empty()) write_scene_file(options.scene, input, fitted, options.mesh_paths);
   const bool is_usable = findings.judgement.verdict != Grade::do_not_use;
   const std::vector<JointPatch> patches = joint_patches(input.robot, findings.result.table);
+  const ResultFileOptions how = file_options(options, input.robot);
   std::vector<OutputFile> files;
   if (folder && is_usable) {
     files = with_copies(options, input,
                         output_files(input.robot, {input.urdf, input.urdf_text}, fitted.calibration,
-                                     findings, fitted.samples, file_options(options)));
+                                     findings, fitted.samples, how));
     const RobotFiles others = robot_files(options, input, patches, files.front().content);
     folder->write(files);
     write(others);
   }
   const double writing = seconds_since(start) - reading - fitting;
   if (!manner.json && !manner.quiet) {
-    if (!files.empty()) show(offsets_text(options, input, patches), manner);
+    if (!files.empty()) {
+      show(offsets_text(options, input,
+                        joint_patches(input.robot, findings.result.table, how.in_servos)),
+           manner);
+    }
     show("\n" + times_text(input.samples.size(), findings.result, reading, fitting, writing),
          manner);
   }

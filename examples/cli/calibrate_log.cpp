@@ -319,7 +319,7 @@ int report(const ResultOptions& options, LogRun& run, const Findings& findings) 
   const Input& first = run.first();
   std::vector<OutputFile> all =
       output_files(first.robot, {first.urdf, first.urdf_text}, first.calibration, findings,
-                   first.samples, file_options(options));
+                   first.samples, file_options(options, first.robot));
   std::erase_if(all, [](const OutputFile& file) { return file.name == "residuals.csv"; });
   const std::string& calibrated = all.front().content;
   const RobotFiles others =

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "kinecal/config/doubts/judge_causes.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/results/standard_output.hpp"
 #include "kinecal/files/text_file.hpp"
@@ -79,6 +80,11 @@ int identify(const IdentifyOptions& options) {
   print(input.diagnostics);
   say("{}", search_summary(found, input));
   Findings& findings = found.fit.findings;
+  if (!found.is_empty()) {
+    judge_causes({input.config, input.robot, input.urdf_text, input.urdf, found.fit.samples,
+                  found.fit.calibration},
+                 findings);
+  }
   for (const std::string& reason : findings.judgement.reasons) say("  - {}\n", reason);
   if (found.is_empty()) {
     say("{} was not written: no pose is unknown, and these samples support no parameter\n",

@@ -283,6 +283,9 @@ InitAnswers answer_from_samples(const Robot& robot, const InitOptions& options) 
                         found.camera_type == "camera2d" ? "pixels" : "points");
   }
   if (!found.target_frame.empty()) text += fmt::format("; frame '{}'", found.target_frame);
+  if (options.base.empty() && !found.base.empty()) {
+    text += fmt::format("; base {}: joints before it are not in the samples", found.base);
+  }
   say("{}\n", text);
   return found;
 }

@@ -126,9 +126,10 @@ Input read_input(const InputOptions& options) {
         [&] {
           input.config_text =
               options.config.empty() ? options.config_text : detail::read_yaml_text(options.config);
-          return parse_config(input.config_text,
-                              options.config.empty() ? "(proposed)" : options.config, diagnostics,
-                              options.nothing_free);
+          return parse_config(
+              input.config_text,
+              options.config.empty() ? "the proposed configuration" : options.config, diagnostics,
+              options.nothing_free);
         },
         diagnostics);
   };

@@ -27,7 +27,7 @@ struct UrdfFile {
                                                    ResultFileOptions options = {});
 
 /// How the files are written that the user asked for.
-[[nodiscard]] ResultFileOptions file_options(const ResultOptions& options);
+[[nodiscard]] ResultFileOptions file_options(const ResultOptions& options, const Robot& robot);
 
 /// The files of a result, and copies of its URDF and configuration.
 /// @throws OutputError  if one would replace an input, or may not be replaced

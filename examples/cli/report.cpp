@@ -12,6 +12,7 @@
 
 #include "kinecal/files/checksum.hpp"
 #include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/results/result_files.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/scene_clouds.hpp"
@@ -146,6 +147,13 @@ void check_reports(const CalibrateOptions& options) {
   std::vector<std::string> inputs = options.samples;
   inputs.insert(inputs.end(), {options.urdf, options.config});
   for (const std::string& camera : options.cameras) inputs.push_back(camera_file(camera));
+  const RobotFileOptions& robot = options.robot_files;
+  inputs.insert(inputs.end(), {robot.kinematics, robot.homing, robot.xacro});
+  if (!options.output.empty()) {  // a folder of results
+    for (const char* result : {"calibrated.urdf", "calibration.yaml", kConfigCopy, kOriginalUrdf}) {
+      inputs.push_back((std::filesystem::path(options.output) / result).string());
+    }
+  }
   constexpr bool kReplace = true;
   for (const std::string& report : options.reports) check_output(report, inputs, kReplace);
 }

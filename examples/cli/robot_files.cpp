@@ -73,6 +73,9 @@ void add_homing(const RobotFileOptions& options, const Input& input,
     return;
   }
   for (const std::string& change : patch.changes) files.said.note({name, 0}, change);
+  if (!patch.changes.empty()) {
+    files.said.note({name, 0}, "has the zeros of these joints, so the URDF is without them");
+  }
   files.sets.push_back(
       {folder_of(file.string()),
        {{backup_name(file, n + 1), text}, {file.filename().string(), patch.text}}});
@@ -115,7 +118,11 @@ void check_robot_files(const ResultOptions& options, const Input& input) {
       throw OutputError(name + ": would replace an input; choose another file");
     }
     inputs.push_back(name);
-    const OutputFolder can_be_written(folder_of(file_behind(name).string()));
+    const std::string folder = folder_of(file_behind(name).string());
+    if (!options.output.empty() && names_same_file(folder, options.output)) {
+      throw OutputError(name + ": is in the folder of the results; choose another one");
+    }
+    const OutputFolder can_be_written(folder);
   };
   for (const std::string& name : {of.kinematics, of.homing, of.xacro}) check(name);
   if (!of.xacro.empty()) {
@@ -126,11 +133,23 @@ void check_robot_files(const ResultOptions& options, const Input& input) {
   (void)robot_files(options, input, {}, input.urdf_text);
 }
 
+std::set<std::string> zeros_in_servos(const RobotFileOptions& of, const Robot& robot) {
+  if (of.homing.empty()) return {};
+  return servo_joints(detail::read_text_file(of.homing), of.homing, robot);
+}
+
 RobotFiles robot_files(const ResultOptions& options, const Input& input,
                        const std::vector<JointPatch>& patches, const std::string& calibrated) {
   const RobotFileOptions& of = options.robot_files;
   RobotFiles files;
-  if (!of.kinematics.empty()) add_kinematics(of.kinematics, input, patches, files);
+  if (!of.kinematics.empty()) {
+    const std::set<std::string> in_servos = zeros_in_servos(of, input.robot);
+    std::vector<JointPatch> origins = patches;
+    for (JointPatch& patch : origins) {
+      if (in_servos.contains(patch.joint)) patch.offset = 0.0;
+    }
+    add_kinematics(of.kinematics, input, origins, files);
+  }
   if (!of.homing.empty()) add_homing(of, input, patches, files);
   if (!of.xacro.empty()) add_xacro(of.xacro, input, calibrated, files);
   return files;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,11 @@ struct RobotFiles {
 /// @throws OutputError  if one would replace an input, or its folder cannot be written to
 void check_robot_files(const ResultOptions& options, const Input& input);
 
+/// The joints whose zeros go into their servos, by the motors of --homing; none without it.
+[[nodiscard]] std::set<std::string> zeros_in_servos(const RobotFileOptions& of, const Robot& robot);
+
 /// What a calibration makes of the files.
+/// @param patches     with all zeros
 /// @param calibrated  the URDF with the calibration, as it is written
 /// @throws InputError  if a file cannot hold it
 [[nodiscard]] RobotFiles robot_files(const ResultOptions& options, const Input& input,

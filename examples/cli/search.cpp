@@ -40,6 +40,9 @@ SearchedFit search_and_fit(Input& input, const CalibrateOptions& options, bool g
   if (const std::string why = another_robot(all.search); !why.empty()) {
     all.fit.findings.judgement.add_causes(Grade::do_not_use, {why});
   }
+  if (!all.search.scales.empty()) {
+    all.fit.findings.judgement.add_causes(Grade::use_with_care, all.search.scales);
+  }
   all.config = config_to_yaml(
       all.search.config,
       "What these samples support; 'kinecal identify' found it.  With each parameter, the\n"

@@ -130,9 +130,10 @@ void check_options(const SelectPosesOptions& options) {
                     options.failures, counted(static_cast<std::size_t>(options.count), "pose")));
   }
   if (options.output.empty()) return;
-  check_output(options.output,
-               {options.urdf, options.config, options.pose_file, options.scene, options.have},
-               options.force);
+  std::vector<std::string> inputs = options.samples;
+  inputs.insert(inputs.end(),
+                {options.urdf, options.config, options.pose_file, options.scene, options.have});
+  check_output(options.output, inputs, options.force);
 }
 
 }  // namespace

@@ -149,4 +149,17 @@ std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
   return detail::sentences(std::move(found));
 }
 
+std::vector<std::string> scales_in_place_of(const Config& without, const Config& with,
+                                            const Robot& robot, std::span<const Sample> samples) {
+  constexpr double kAsWell = 1.2;
+  const std::vector<Sample> some = detail::some_of(samples);
+  const detail::CauseSolver solver{without, robot, detail::plain_calibrator()};
+  const auto before = detail::solve_samples(solver, without, some),
+             after = detail::solve_samples(solver, with, some);
+  if (!before || !after || !(before->cost > 0.0)) return {};
+  const double explains = kAsWell * after->cost / before->cost;
+  if (explains >= detail::kExplainsScale) return {};
+  return detail::sentences(detail::scale_causes(solver, some, *before, explains));
+}
+
 }  // namespace kinecal

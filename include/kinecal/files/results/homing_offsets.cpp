@@ -119,4 +119,13 @@ HomingPatch patch_homing_offsets(const std::string& text, const std::string& fil
   return patch;
 }
 
+std::set<std::string> servo_joints(const std::string& text, const std::string& file,
+                                   const Robot& robot) {
+  std::set<std::string> joints;
+  for (const detail::Motor& motor : detail::motors_of(text, file)) {
+    if (detail::zero_of(robot, {}, motor.name)) joints.insert(motor.name);
+  }
+  return joints;
+}
+
 }  // namespace kinecal

@@ -14,6 +14,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -44,5 +45,10 @@ struct HomingPatch {
                                                const Robot& robot,
                                                const std::vector<JointPatch>& patches,
                                                ServoMake make);
+
+/// The motors that are joints of the robot: their zeros are in the file, so the URDF must not have them, too.
+/// @throws InputError  as patch_homing_offsets()
+[[nodiscard]] std::set<std::string> servo_joints(const std::string& text, const std::string& file,
+                                                 const Robot& robot);
 
 }  // namespace kinecal

@@ -56,7 +56,8 @@ struct CalibratedCamera {
 }  // namespace
 }  // namespace detail
 
-std::vector<JointPatch> joint_patches(const Robot& robot, const ParameterTable& table) {
+std::vector<JointPatch> joint_patches(const Robot& robot, const ParameterTable& table,
+                                      const std::set<std::string>& in_servos) {
   std::vector<JointPatch> patches;
   for (const Joint& joint : robot.joints()) {
     const auto value = [&](const std::string& name) {
@@ -67,7 +68,9 @@ std::vector<JointPatch> joint_patches(const Robot& robot, const ParameterTable& 
     for (std::size_t axis = 0; axis < 6; ++axis) {
       frame(static_cast<Eigen::Index>(axis)) = value(parameter_name(joint.name, kFrameAxes[axis]));
     }
-    JointPatch patch{joint.name, moves(joint.type) && !joint.mimic ? value(joint.name) : 0.0, {}};
+    const bool has_zero =
+        moves(joint.type) && !joint.mimic && in_servos.find(joint.name) == in_servos.end();
+    JointPatch patch{joint.name, has_zero ? value(joint.name) : 0.0, {}};
     if (joint.mimic) {
       patch.mimic_multiplier = value(parameter_name(joint.name, MimicErrors::kParameters[0].name));
       patch.mimic_offset = value(parameter_name(joint.name, MimicErrors::kParameters[1].name));
@@ -103,8 +106,9 @@ std::vector<OutputFile> result_files(const Robot& robot, const std::string& urdf
                                      const ResultFileOptions& options) {
   std::vector<OutputFile> files;
   const std::string urdf = detail::dated("calibrated", ".urdf", options.date);
-  files.push_back({urdf, patch_urdf(urdf_text, urdf_name, robot, joint_patches(robot, result.table),
-                                    options.offsets)});
+  files.push_back(
+      {urdf, patch_urdf(urdf_text, urdf_name, robot,
+                        joint_patches(robot, result.table, options.in_servos), options.offsets)});
   std::string references;
   const auto refer = [&](const std::string& kind, const std::string& camera,
                          const std::string& file) {

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,12 +40,14 @@ struct ResultFileOptions {
   std::string date = {};  ///< Y_m_d_H_M_S for upstream's names; empty: kinecal's names
   /// Standard deviations by table index, units of the parameters; infinite: not determined.
   std::map<int, double> deviations = {};
+  std::set<std::string> in_servos = {};  ///< joints whose zeros the URDF does not get
 };
 
 /// The calibration of each joint of the robot, from the parameter values.  Skips virtual frames,
 /// which no URDF contains.
-[[nodiscard]] std::vector<JointPatch> joint_patches(const Robot& robot,
-                                                    const ParameterTable& table);
+/// @param in_servos  joints whose zeros their servos get: without offset
+[[nodiscard]] std::vector<JointPatch> joint_patches(const Robot& robot, const ParameterTable& table,
+                                                    const std::set<std::string>& in_servos = {});
 
 /// Why a calibrated camera is physically impossible, for example after one bad capture far away;
 /// empty if all cameras are possible.

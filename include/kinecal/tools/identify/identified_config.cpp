@@ -142,8 +142,12 @@ Config identified_config(const Config& config, const IdentifyTask& task, const I
   }
   for (const FreeFrameConfig& frame :
        step.free_frames) {  // poses that were searched for are known now
-    if (frame.is_fixed || problem.robot().has_joint(frame.name) || found.result.table.size() == 0)
+    const bool is_whole =
+        std::all_of(frame.axes.begin(), frame.axes.end(), [](bool a) { return a; });
+    if (frame.is_fixed || found.result.table.size() == 0 ||
+        (problem.robot().has_joint(frame.name) && !is_whole)) {
       continue;
+    }
     Eigen::Matrix<double, 6, 1> pose;
     for (std::size_t axis = 0; axis < 6; ++axis) {
       pose(static_cast<Eigen::Index>(axis)) =

@@ -22,7 +22,7 @@ Config config_from_samples(const Robot& robot, std::span<const Sample> samples) 
         std::string(error.what()));
   }
   Diagnostics diagnostics;
-  Config config = parse_config(text, "(proposed)", diagnostics);
+  Config config = parse_config(text, "the proposed configuration", diagnostics);
   diagnostics.throw_if_errors();
   for (BlockConfig& block : config.steps.front().error_blocks) block.sigma.reset();
   return config;

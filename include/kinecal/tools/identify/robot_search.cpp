@@ -10,12 +10,14 @@
 #include <set>
 
 #include "kinecal/config/assemble.hpp"
+#include "kinecal/config/doubts/likely_causes.hpp"
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/first_names.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/reading.hpp"
+#include "kinecal/tools/identify/candidates.ipp"
 
 namespace kinecal {
 
@@ -62,17 +64,50 @@ namespace {
   return text;
 }
 
+/// Sentences about a scale of points that explains as much as the lengths and models that were freed.
+[[nodiscard]] std::vector<std::string> scales_in_place_of_lengths(const Config& config,
+                                                                  const Robot& robot,
+                                                                  std::span<const Sample> samples,
+                                                                  const AnyProblem& problem,
+                                                                  const RobotSearch& search) {
+  Identified others = search.found;
+  std::vector<std::string> lengths;
+  std::erase_if(others.chosen, [&](int k) {
+    const bool is_other = search.task.candidates[static_cast<std::size_t>(k)].rank < kGeometry;
+    if (!is_other) lengths.push_back(name_of(search, k));
+    return !is_other;
+  });
+  constexpr std::size_t kFewest = 2;  // one length is as simple as one scale
+  if (lengths.size() < kFewest) return {};
+  std::vector<std::string> scales = scales_in_place_of(
+      identified_config(config, search.task, others, problem), search.config, robot, samples);
+  for (std::string& scale : scales) {
+    scale += fmt::format("; {} explain no more: are the lengths of these points right?",
+                         first_names(lengths));
+  }
+  return scales;
+}
+
 /// Takes what is held out of a search: a parameter, all of a frame, or a candidate by its name.
+/// @param unknown  frames whose pose is searched for
 void hold_in_search(const std::vector<std::string>& names, const AnyProblem& problem,
-                    IdentifyTask& task) {
+                    const std::vector<UnknownFrame>& unknown, IdentifyTask& task) {
   std::set<std::string> known;
   for (const std::string& name : names) {
     const int parameter = problem.table().find(name);
-    const auto is_held = [&](int p) {
-      if (parameter >= 0) return p == parameter;
-      return problem.frames().contains(name) &&
-             problem.owners()[static_cast<std::size_t>(p)] == name;
+    const auto is_held = [&](int p) {  // of a joint: its zero and its frame, as hold_parameters()
+      return p == parameter || (problem.frames().contains(name) &&
+                                problem.owners()[static_cast<std::size_t>(p)] == name);
     };
+    if (std::any_of(unknown.begin(), unknown.end(), [&](const UnknownFrame& frame) {
+          return frame.name == name ||
+                 (parameter >= 0 &&
+                  problem.owners()[static_cast<std::size_t>(parameter)] == frame.name);
+        })) {
+      throw InputError("--hold " + name +
+                       ": nothing says where it is, so the search needs it free; a configuration "
+                       "can give its pose under 'free_frames_initial_values'");
+    }
     const auto has_held = [&](const IdentifyCandidate& candidate) {
       known.insert(candidate.name);
       return candidate.name == name ||
@@ -100,9 +135,10 @@ RobotSearch search_robot(const Config& config, const Robot& robot, std::span<con
   diagnostics.throw_if_errors();
   const AnyProblem& problem = *calibration.steps.front().problem;
   all.task = identify_task(config, problem, samples, limits.geometry_only);
-  detail::hold_in_search(limits.hold, problem, all.task);
+  detail::hold_in_search(limits.hold, problem, calibration.steps.front().unknown_frames, all.task);
   all.found = identify(calibration, samples, all.task.base, all.task.candidates);
   all.config = identified_config(config, all.task, all.found, problem);
+  all.scales = detail::scales_in_place_of_lengths(config, robot, samples, problem, all);
   Diagnostics of_others;  // what is not free any more
   hold_parameters(all.config, limits.hold, of_others);
   return all;

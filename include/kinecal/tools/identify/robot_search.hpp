@@ -20,6 +20,8 @@ struct RobotSearch {
   IdentifyTask task;
   Identified found;
   Config config;  ///< that frees what was found
+  /// Sentences about points of another scale, which would explain as much as the lengths that were freed.
+  std::vector<std::string> scales = {};
 };
 
 /// What a search leaves out.

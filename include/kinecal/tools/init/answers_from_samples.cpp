@@ -14,6 +14,7 @@
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/tools/init/possible_targets.hpp"
+#include "kinecal/tools/init/recorded_joints.ipp"
 #include "kinecal/tools/init/robot_parts.hpp"
 #include "kinecal/tools/init/seen_sensors.ipp"
 
@@ -62,6 +63,10 @@ namespace {
 /// A reflector and a tracker: two sensors without a camera, one of which always reports the same.
 void add_tracker(const Robot& robot, std::span<const Sample> samples,
                  const std::vector<const SeenSensor*>& chains, InitAnswers& answers) {
+  if (chains.size() == 2 && !chains[0]->varies && !chains[1]->varies) {
+    throw InputError("--from: the points of " + names_of(chains) +
+                     " are the same in all samples: neither measures anything");
+  }
   if (chains.size() != 2 || chains[0]->varies == chains[1]->varies) {
     throw InputError(
         "--from: the samples have no camera, and not one sensor with fixed points and one with "
@@ -133,9 +138,12 @@ void add_camera(const Robot& robot, std::span<const Sample> samples, const SeenS
 }  // namespace
 }  // namespace detail
 
-InitAnswers answers_from_samples(const Robot& robot, std::span<const Sample> samples,
+InitAnswers answers_from_samples(const Robot& robot, std::span<const Sample> all,
                                  InitAnswers given) {
-  if (samples.empty()) throw InputError("--from: there are no samples");
+  if (all.empty()) throw InputError("--from: there are no samples");
+  const std::vector<Sample> samples = detail::finite(all);
+  if (samples.empty()) throw InputError("--from: each sample has a feature that is not a number");
+  detail::check_joints_of(robot, samples);
   if (samples.size() == 1)
     throw InputError("--from: there is only one sample, which does not show what moves");
   const std::vector<detail::SeenSensor> sensors = detail::sensors_of(samples);
@@ -155,6 +163,7 @@ InitAnswers answers_from_samples(const Robot& robot, std::span<const Sample> sam
   if (needs_arm(given.target) && given.arm.empty()) {
     throw InputError("--arm: no arm of the URDF moves in the samples; give the link at its end");
   }
+  if (given.base.empty()) given.base = detail::recorded_base(robot, samples, given);
   return given;
 }
 
