@@ -20,6 +20,7 @@
 #include "kinecal/text/printable.hpp"
 #include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/identify/would_help.hpp"
+#include "kinecal/trust/speed_limit.hpp"
 #include "output.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
@@ -181,6 +182,25 @@ std::optional<OutputFolder> output_folder(const CalibrateOptions& options) {
   return std::optional<OutputFolder>(std::in_place, options.output);
 }
 
+/// How fast is still good, if a lag was calibrated.
+std::vector<std::string> how_fast(const Fit& fitted) {
+  const CalibrationResult& result = fitted.findings.result;
+  const auto is_lag = [&](int p) { return result.table[p].name.ends_with("_lag"); };
+  if (!result.converged ||
+      std::none_of(result.calibrated.begin(), result.calibrated.end(), is_lag)) {
+    return {};
+  }
+  const CalibrationStep& last = fitted.calibration.steps.back();
+  const Eigen::VectorXd values = result.table.values();
+  std::vector<std::string> sentences;
+  for (const SpeedLimit& limit :
+       speed_limits(*last.problem, last.free,
+                    {values.data(), static_cast<std::size_t>(values.size())}, fitted.samples)) {
+    sentences.push_back(limit.text());
+  }
+  return sentences;
+}
+
 /// Calibrates and judges, with a line of progress on a terminal; nothing if nothing is free and the samples support nothing.
 std::optional<Fit> fit_and_judge(const CalibrateOptions& options, Input& input) {
   std::optional<ProgressLine> line(std::in_place);
@@ -209,6 +229,7 @@ std::optional<Fit> fit_and_judge(const CalibrateOptions& options, Input& input) 
     fitted.findings.helps = would_help(input.config, input.robot, fitted.samples,
                                        fitted.calibration, fitted.findings.result);
   }
+  fitted.findings.speeds = how_fast(fitted);
   fitted.findings.call = {options.command, inputs_of_plan(options, input),
                           options.dry_run ? "" : options.output, KINECAL_VERSION,
                           read_files(options, input)};

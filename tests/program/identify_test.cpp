@@ -109,6 +109,36 @@ TEST_F(IdentifyProgram, HoldsWhatItIsTold) {
                                      "you mean 'wrist_1_joint'?"));
 }
 
+TEST_F(IdentifyProgram, HoldsAJointAsTheConfigurationItWrites) {
+  const Outcome held = kinecal("identify " + kFiles + "--hold elbow_joint");
+  EXPECT_THAT(held.out, Not(HasSubstr("\n  elbow_joint_")));
+  EXPECT_THAT(read("identified.yaml"), Not(HasSubstr("name: elbow_joint,")));
+  const Outcome pose = kinecal("identify " + kFiles + "--hold tracker_frame --force");
+  EXPECT_EQ(pose.code, 1);
+  EXPECT_THAT(pose.err, HasSubstr("--hold tracker_frame: nothing says where it is"));
+}
+
+TEST_F(IdentifyProgram, NamesAMistakeInSamples) {
+  std::string urdf = read("ur5e.urdf");  // wrist_1 counts the other way
+  const std::size_t joint = urdf.find("<joint name=\"wrist_1_joint\"");
+  const std::size_t axis = urdf.find("<axis xyz=\"0 0 1\"", joint);
+  ASSERT_LT(joint, axis);
+  write("turned.urdf", urdf.replace(axis, 17, "<axis xyz=\"0 0 -1\""));
+  const Outcome found = kinecal("identify --urdf turned.urdf --samples samples.yaml");
+  EXPECT_EQ(found.code, 2);
+  EXPECT_THAT(found.out, HasSubstr("likely cause: with the positions of 'wrist_1_joint' negated"));
+}
+
+TEST_F(IdentifyProgram, SelectPosesKeepsItsSamples) {
+  ASSERT_EQ(kinecal("identify " + kFiles).code, 0);
+  const std::string before = read("samples.yaml");
+  const Outcome refused = kinecal("select-poses " + kFiles +
+                                  "--config identified.yaml --count 10 -o samples.yaml --force");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("samples.yaml: would replace an input"));
+  EXPECT_EQ(read("samples.yaml"), before);
+}
+
 TEST_F(IdentifyProgram, SaysThatSamplesSupportNothing) {
   ASSERT_EQ(kinecal("calibrate " + kFiles + "--offsets origin --output out").code, 0);
   const std::string right = "--urdf out/calibrated.urdf --samples samples.yaml ";

@@ -237,15 +237,25 @@ TEST_F(Program, WritesOriginsHomingOffsetsAndXacro) {
   std::string xacro = kUrdf;
   xacro.replace(xacro.find("-0.3 0 1.2"), 10, "-0.3 0 ${h}");
   write("tiny.xacro", xacro);
-  const std::string files =
-      "--offsets origin --kinematics k.yaml --homing arm.json --xacro tiny.xacro";
-  const Outcome result = calibrate(files);
-  EXPECT_EQ(result.code, 0) << result.err;
   // the elbow's zero is 0.02 rad: 13.04 ticks
+  const Outcome servos = calibrate("--offsets origin --kinematics k.yaml --homing arm.json");
+  EXPECT_EQ(servos.code, 0) << servos.err;
   EXPECT_EQ(read("arm.json"), std::string(homing).replace(homing.find("100"), 3, "87"));
   EXPECT_EQ(read("arm.json.backup_1"), homing);
-  EXPECT_THAT(result.err, AllOf(HasSubstr("motors that are no joint: gripper"),
-                                HasSubstr("elbow: homing_offset 100 becomes 87")));
+  EXPECT_THAT(servos.err, AllOf(HasSubstr("motors that are no joint: gripper"),
+                                HasSubstr("elbow: homing_offset 100 becomes 87"),
+                                HasSubstr("so the URDF is without them")));
+  EXPECT_THAT(read("out/calibrated.urdf"), Not(HasSubstr("0.019")));
+  EXPECT_EQ(
+      YAML::LoadFile((folder_ / "k.yaml").string())["kinematics"]["elbow"]["pitch"].as<double>(),
+      0.0);
+  const Outcome lost = calibrate("--homing arm.json --report arm.json");
+  EXPECT_THAT(lost.err, HasSubstr("arm.json: would replace an input"));
+  EXPECT_THAT(calibrate("--kinematics out/calibrated.urdf").err,
+              HasSubstr("is in the folder of the results"));
+  const std::string files = "--offsets origin --kinematics k.yaml --xacro tiny.xacro";
+  const Outcome result = calibrate(files);
+  EXPECT_EQ(result.code, 0) << result.err;
   const YAML::Node elbow = YAML::LoadFile((folder_ / "k.yaml").string())["kinematics"]["elbow"];
   EXPECT_NEAR(elbow["x"].as<double>(), 0.4, 1e-9);
   EXPECT_NEAR(elbow["pitch"].as<double>(), 0.02, 1e-6);
@@ -256,7 +266,7 @@ TEST_F(Program, WritesOriginsHomingOffsetsAndXacro) {
   const std::string patched = read("tiny.xacro"), kinematics = read("k.yaml");
   const Outcome again = calibrate(files);
   EXPECT_EQ(again.code, 0) << again.err;
-  EXPECT_THAT(again.err, HasSubstr("holds these zeros already"));
+  EXPECT_THAT(calibrate("--homing arm.json").err, HasSubstr("holds these zeros already"));
   EXPECT_EQ(read("arm.json"), std::string(homing).replace(homing.find("100"), 3, "87"));
   EXPECT_EQ(read("tiny.xacro"), patched);
   EXPECT_EQ(read("k.yaml"), kinematics);

@@ -29,6 +29,7 @@ namespace detail {
     text += fmt::format("would help: {}; kinecal identify searches for more\n",
                         fmt::join(findings.helps, ", "));
   }
+  for (const std::string& speed : findings.speeds) text += "how fast: " + speed + "\n";
   return text;
 }
 

@@ -22,6 +22,7 @@ struct Findings : JudgedResult {
   std::map<std::string, std::string> images = {};  ///< "raw" or "rectified", where it was chosen,
                                                    ///< by camera
   std::vector<std::string> helps = {};  ///< what would lower the error on held-out poses: sentences
+  std::vector<std::string> speeds = {};  ///< how fast is still good, where samples moved: sentences
   ReportedSearch search = {};  ///< that chose the free parameters; without steps: there was none
   RecordedPoses poses = {};    ///< of the samples that were used
   ProgramCall call = {};       ///< how the program was called

@@ -170,6 +170,7 @@ std::string json_report(const Findings& findings) {
       {"verdict", to_string(findings.judgement.verdict)},
       {"reasons", findings.judgement.reasons},
       {"would_help", findings.helps},
+      {"how_fast", findings.speeds},
       {"search", json_list(findings.search.steps, searched)},
       {"next", next_step(findings)},
       {"converged", result.converged},

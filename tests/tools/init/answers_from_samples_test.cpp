@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "support/paths.hpp"
@@ -88,6 +90,27 @@ TEST(AnswersFromSamples, FixedPointsAreReflectorsOfATracker) {
   EXPECT_EQ(found.target_frame, "smr");
 }
 
+TEST(AnswersFromSamples, TheBaseIsWhereRecordedJointsBegin) {
+  const Robot fetch = shipped_robot("fetch");
+  const std::vector<Observation> seen = {board_of("holder", "my_board"),
+                                         camera_of("eye", "head_camera_rgb_optical_frame", 0.0)};
+  std::vector<std::string> joints = kFetchArm;
+  joints.insert(joints.end(), {"head_pan_joint", "head_tilt_joint"});
+  EXPECT_EQ(answers_from_samples(fetch, moving(joints, seen), {}).base, "torso_lift_link");
+  joints.push_back("torso_lift_joint");
+  EXPECT_EQ(answers_from_samples(fetch, moving(joints, seen), {}).base, "");
+  std::erase(joints, "elbow_flex_joint");  // inside the arm: an error of the samples
+  EXPECT_EQ(answers_from_samples(fetch, moving(joints, seen), {}).base, "");
+}
+
+TEST(AnswersFromSamples, AFeatureThatIsNotANumberIsPassedOver) {
+  const Robot fetch = shipped_robot("fetch");
+  std::vector<Sample> samples =
+      moving(kFetchArm, {board_of("laser", "world_of_laser"), board_of("ball", "smr")});
+  samples.front().observations[1].features[0].point.x() = std::nan("");
+  EXPECT_EQ(answers_from_samples(fetch, samples, {}).holder, "ball");
+}
+
 TEST(AnswersFromSamples, NameWhatTheyLeaveOpen) {
   const Robot fetch = shipped_robot("fetch");
   const auto why = [&](const std::vector<Sample>& samples) -> std::string {
@@ -100,6 +123,10 @@ TEST(AnswersFromSamples, NameWhatTheyLeaveOpen) {
   };
   EXPECT_THAT(why({}), HasSubstr("there are no samples"));
   EXPECT_THAT(why(moving(kFetchArm, {board_of("arm", "board")})), HasSubstr("no camera"));
+  EXPECT_THAT(why(moving(kFetchArm, {board_of("arm", "board"), board_of("table", "c")})),
+              HasSubstr("'arm', 'table' are the same in all samples"));
+  EXPECT_THAT(why(moving({"joint_a1"}, {board_of("laser", "l"), board_of("ball", "smr")})),
+              HasSubstr("none of the joints of the samples (joint_a1, ...) is in the URDF"));
   const Observation eye = camera_of("eye", "head_camera_rgb_optical_frame", 0.0);
   EXPECT_THAT(why(moving(kFetchArm, {board_of("arm", "b"), eye, camera_of("other", "o", 0.0)})),
               HasSubstr("several cameras, 'eye', 'other'"));

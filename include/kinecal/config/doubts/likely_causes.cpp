@@ -52,7 +52,8 @@ constexpr double kExplainsScale = 0.25;
       best += move;
       at_best = *next;
     }
-    if (i == 0 && std::abs(move) < most && at_best.cost > 2.0 * explains * now.cost) {
+    if (i == 0 && std::abs(move) < most &&
+        at_best.cost > 2.0 * std::max(explains, kExplains) * now.cost) {
       return std::nullopt;  // the parabola shows well enough that nothing can be gained
     }
     step = std::min(step, std::max(0.1 * step, std::abs(move)));
@@ -149,17 +150,13 @@ std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
   return detail::sentences(std::move(found));
 }
 
-std::vector<std::string> scales_in_place_of(const Config& without, const Config& with,
-                                            const Robot& robot, std::span<const Sample> samples) {
-  constexpr double kAsWell = 1.2;
+std::vector<std::string> scales_without_lengths(const Config& config, const Robot& robot,
+                                                std::span<const Sample> samples) {
+  const detail::CauseSolver solver{config, robot, detail::plain_calibrator()};
   const std::vector<Sample> some = detail::some_of(samples);
-  const detail::CauseSolver solver{without, robot, detail::plain_calibrator()};
-  const auto before = detail::solve_samples(solver, without, some),
-             after = detail::solve_samples(solver, with, some);
-  if (!before || !after || !(before->cost > 0.0)) return {};
-  const double explains = kAsWell * after->cost / before->cost;
-  if (explains >= detail::kExplainsScale) return {};
-  return detail::sentences(detail::scale_causes(solver, some, *before, explains));
+  const auto now = detail::solve_samples(solver, config, some);
+  if (!now) return {};
+  return detail::sentences(detail::scale_causes(solver, some, *now, detail::kExplainsScale));
 }
 
 }  // namespace kinecal

@@ -43,12 +43,11 @@ using Calibrator = std::function<CalibrationResult(const Calibration&)>;
                                                     const ParameterTable& solution,
                                                     const Assessment& last);
 
-/// Sentences about models whose points have another scale, which explains as much as what is free in one
-/// configuration and held in another: one number in place of several lengths.
-/// @param without  with those lengths held
-/// @param with     with them free
-[[nodiscard]] std::vector<std::string> scales_in_place_of(const Config& without, const Config& with,
-                                                          const Robot& robot,
-                                                          std::span<const Sample> samples);
+/// Sentences about models whose points have another scale: at the right one, the noise of a configuration that frees
+/// no lengths is half as large.
+/// @param config  without lengths that could absorb a scale
+[[nodiscard]] std::vector<std::string> scales_without_lengths(const Config& config,
+                                                              const Robot& robot,
+                                                              std::span<const Sample> samples);
 
 }  // namespace kinecal

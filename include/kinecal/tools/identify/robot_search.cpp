@@ -10,14 +10,13 @@
 #include <set>
 
 #include "kinecal/config/assemble.hpp"
-#include "kinecal/config/doubts/likely_causes.hpp"
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/first_names.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/reading.hpp"
-#include "kinecal/tools/identify/candidates.ipp"
+#include "kinecal/tools/identify/scale_or_lengths.ipp"
 
 namespace kinecal {
 
@@ -64,30 +63,6 @@ namespace {
   return text;
 }
 
-/// Sentences about a scale of points that explains as much as the lengths and models that were freed.
-[[nodiscard]] std::vector<std::string> scales_in_place_of_lengths(const Config& config,
-                                                                  const Robot& robot,
-                                                                  std::span<const Sample> samples,
-                                                                  const AnyProblem& problem,
-                                                                  const RobotSearch& search) {
-  Identified others = search.found;
-  std::vector<std::string> lengths;
-  std::erase_if(others.chosen, [&](int k) {
-    const bool is_other = search.task.candidates[static_cast<std::size_t>(k)].rank < kGeometry;
-    if (!is_other) lengths.push_back(name_of(search, k));
-    return !is_other;
-  });
-  constexpr std::size_t kFewest = 2;  // one length is as simple as one scale
-  if (lengths.size() < kFewest) return {};
-  std::vector<std::string> scales = scales_in_place_of(
-      identified_config(config, search.task, others, problem), search.config, robot, samples);
-  for (std::string& scale : scales) {
-    scale += fmt::format("; {} explain no more: are the lengths of these points right?",
-                         first_names(lengths));
-  }
-  return scales;
-}
-
 /// Takes what is held out of a search: a parameter, all of a frame, or a candidate by its name.
 /// @param unknown  frames whose pose is searched for
 void hold_in_search(const std::vector<std::string>& names, const AnyProblem& problem,
@@ -100,6 +75,7 @@ void hold_in_search(const std::vector<std::string>& names, const AnyProblem& pro
                                 problem.owners()[static_cast<std::size_t>(p)] == name);
     };
     if (std::any_of(unknown.begin(), unknown.end(), [&](const UnknownFrame& frame) {
+          if (frame.has_guess) return false;
           return frame.name == name ||
                  (parameter >= 0 &&
                   problem.owners()[static_cast<std::size_t>(parameter)] == frame.name);
@@ -138,7 +114,7 @@ RobotSearch search_robot(const Config& config, const Robot& robot, std::span<con
   detail::hold_in_search(limits.hold, problem, calibration.steps.front().unknown_frames, all.task);
   all.found = identify(calibration, samples, all.task.base, all.task.candidates);
   all.config = identified_config(config, all.task, all.found, problem);
-  all.scales = detail::scales_in_place_of_lengths(config, robot, samples, problem, all);
+  all.scales = detail::scales_in_lengths(config, robot, samples, problem, all);
   Diagnostics of_others;  // what is not free any more
   hold_parameters(all.config, limits.hold, of_others);
   return all;

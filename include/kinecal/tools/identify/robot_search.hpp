@@ -20,7 +20,7 @@ struct RobotSearch {
   IdentifyTask task;
   Identified found;
   Config config;  ///< that frees what was found
-  /// Sentences about points of another scale, which would explain as much as the lengths that were freed.
+  /// Sentences about points of another scale, which the lengths that were freed may have absorbed.
   std::vector<std::string> scales = {};
 };
 
