@@ -59,12 +59,12 @@ struct StampVariance {
 /// Fits both parts: see speed_limit.hpp.
 /// @param errors  sorted by slopes, at least three, with slopes that are not zero
 [[nodiscard]] inline StampVariance fit_stamp_variance(const std::vector<StampError>& errors) {
-  constexpr int kRounds = 30;
+  constexpr int kReweightings = 30;
   constexpr double kFarthest = 3.5 * 3.5;  // squares of standard deviations
   constexpr double kLeast = 0.1;           // of the variance of the noise
   StampVariance now = variance_of_thirds(errors);
   const double unit = errors.back().slope * errors.back().slope;  // keeps both columns alike
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kReweightings; ++round) {
     Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     for (const StampError& error : errors) {
