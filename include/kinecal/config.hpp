@@ -10,6 +10,7 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/config/config_to_yaml.hpp"
 #include "kinecal/config/doubts/check_offsets.hpp"
+#include "kinecal/config/doubts/check_weight.hpp"
 #include "kinecal/config/doubts/enough_samples.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/doubts/ignored_urdf.hpp"

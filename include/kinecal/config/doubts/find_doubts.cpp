@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/config/doubts/find_doubts.hpp"
 
+#include "kinecal/config/doubts/check_weight.hpp"
 #include "kinecal/config/doubts/enough_samples.hpp"
 #include "kinecal/config/doubts/ignored_urdf.hpp"
 #include "kinecal/config/doubts/initial_values.hpp"
@@ -21,6 +22,7 @@ void find_doubts(const CalibrationInput& input, Diagnostics& diagnostics) {
   detail::check_xacro(urdf_text, urdf, diagnostics);
   detail::check_ignored_urdf(robot, urdf_text, urdf, diagnostics);
   detail::check_urdf_units(config, robot, urdf_text, urdf, diagnostics);
+  detail::check_weight(config, samples, diagnostics);
   if (samples.empty() || before > 0) return;  // the rest needs models that match the robot
   const std::vector<detail::UsedJoint> joints = detail::used_joints(config, robot, samples);
   detail::check_joint_positions(joints, samples, diagnostics);
