@@ -17,22 +17,22 @@ using std::chrono::milliseconds;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const Stamp kStart = std::chrono::seconds(1'700'000'000);
+const Stamp kMotionStart = std::chrono::seconds(1'700'000'000);
 
 Stamp at(double time) {
-  return kStart + std::chrono::round<Stamp>(std::chrono::duration<double>(time));
+  return kMotionStart + std::chrono::round<Stamp>(std::chrono::duration<double>(time));
 }
 
 /// Reads a joint for some time, seconds.
 void read_joint(JointTracks& tracks, const std::string& joint, double begin, double end,
                 milliseconds period, const std::function<double(double)>& position) {
   for (Stamp stamp = at(begin); stamp <= at(end); stamp += period) {
-    const double time = std::chrono::duration<double>(stamp - kStart).count();
+    const double time = std::chrono::duration<double>(stamp - kMotionStart).count();
     tracks.add("joint_states", {stamp, {joint}, {position(time)}});
   }
 }
 
-JointTracks chosen(JointTracks tracks) {
+JointTracks chosen_for_motion(JointTracks tracks) {
   Diagnostics diagnostics;
   tracks.choose({}, "a.bag", diagnostics, true);
   EXPECT_THAT(diagnostics.errors, IsEmpty());
@@ -49,7 +49,7 @@ TEST(JointMotion, OfASwingIsFoundBetweenReadings) {
   for (const auto period : {milliseconds(2), milliseconds(20), milliseconds(100)}) {
     JointTracks tracks;
     read_joint(tracks, "arm", 0.0, 8.0, period, swing);
-    tracks = chosen(tracks);
+    tracks = chosen_for_motion(tracks);
     for (double time = 0.3; time < 7.7; time += 0.0937) {
       const JointsInMotion found = tracks.motion(at(time));
       ASSERT_EQ(found.refusal, "") << time;
@@ -66,7 +66,7 @@ TEST(JointMotion, OfNoisyReadingsIsTheirMean) {
   const auto noisy = [](double time) { return swing(time) + kNoise * std::sin(1e4 * time); };
   JointTracks tracks;
   read_joint(tracks, "arm", 0.0, 4.0, milliseconds(20), noisy);
-  tracks = chosen(tracks);
+  tracks = chosen_for_motion(tracks);
   for (double time = 0.3; time < 3.7; time += 0.031) {
     const MeasuredJoints joints = tracks.motion(at(time)).joints;
     EXPECT_NEAR(joints.positions.at(0), swing(time), kNoise);
@@ -82,7 +82,7 @@ TEST(JointMotion, OfAWheelGoesOnOverHalfATurn) {
       };
       JointTracks tracks;
       read_joint(tracks, "wheel", 0.0, 9.0, period, wheel);
-      tracks = chosen(tracks);
+      tracks = chosen_for_motion(tracks);
       for (double time = 0.1; time < 8.9; time += 0.013) {
         const MeasuredJoints joints = tracks.motion(at(time)).joints;
         const double away = joints.positions.at(0) - 3.0 - speed * time;
@@ -98,7 +98,7 @@ TEST(JointMotion, IsNotKnownWhereAJointWasNotRead) {
   read_joint(tracks, "arm", 0.0, 5.0, milliseconds(20), swing);
   read_joint(tracks, "wrist", 0.0, 2.0, milliseconds(20), swing);
   read_joint(tracks, "wrist", 2.6, 5.0, milliseconds(20), swing);
-  tracks = chosen(tracks);
+  tracks = chosen_for_motion(tracks);
   EXPECT_EQ(tracks.motion(at(1.5)).refusal, "");
   EXPECT_THAT(tracks.motion(at(2.3)).refusal,
               HasSubstr("joint 'wrist' of topic 'joint_states' was not read within 0.25 s"));
@@ -110,7 +110,7 @@ TEST(JointMotion, HasAReadingOnEitherSideOfAGap) {
   JointTracks tracks;
   read_joint(tracks, "arm", 0.0, 2.0, milliseconds(10), swing);
   read_joint(tracks, "arm", 2.2, 4.0, milliseconds(10), swing);
-  tracks = chosen(tracks);
+  tracks = chosen_for_motion(tracks);
   const MeasuredJoints joints = tracks.motion(at(2.02)).joints;
   EXPECT_NEAR(joints.positions.at(0), swing(2.02), 1e-4);
   EXPECT_NEAR(joints.velocities.at(0), 0.5 * std::cos(2.02), 1e-2);
