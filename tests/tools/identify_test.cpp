@@ -211,6 +211,31 @@ TEST(Identify, HasStandardErrorsAndWhatWasTriedAndNotFreed) {
   EXPECT_EQ(found.identified.beyond.front().parameters > steps[1].parameters, true);
 }
 
+/// The judgement of a calibration that frees one more parameter.
+Judgement judged_with(const SpoiledRobot& arm, const std::string& parameter) {
+  Config config = arm.config();
+  StepConfig& step = config.steps.front();
+  step.free_params = {{parameter, step.place}};
+  Calibration calibration = assembled(config, arm.robot(), arm.samples());
+  return calibrate_and_judge(calibration, arm.samples()).judgement;
+}
+
+TEST(Identify, TheVerdictDoubtsPlayBelowZero) {
+  SpoiledRobot arm(5);
+  arm.spoil(0, "elbow_joint_backlash", -0.002);
+  EXPECT_THAT(judged_with(arm, "elbow_joint_backlash").reasons,
+              testing::Contains(HasSubstr("'elbow_joint_backlash' is -0.1")));
+  arm.spoil(0, "elbow_joint_backlash", 0.002);
+  EXPECT_THAT(judged_with(arm, "elbow_joint_backlash").reasons, IsEmpty());
+}
+
+TEST(Identify, TheVerdictNamesAQuarterTurn) {
+  SpoiledRobot arm(5);
+  arm.spoil(0, "wrist_2_joint", 1.57);
+  EXPECT_THAT(judged_with(arm, "wrist_2_joint").reasons,
+              testing::Contains(HasSubstr("A quarter turn: is the motor screwed on so?")));
+}
+
 TEST(Identify, NamesAScaleInPlaceOfSeveralLengths) {
   SpoiledRobot arm(8);
   arm.spoil(0, "wrist_1_joint", 0.02);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <string>
 
 #include "kinecal/trust/judge.hpp"
@@ -15,6 +17,16 @@ namespace kinecal::detail {
 [[nodiscard]] inline double change_of(const Parameter& p) {
   if (p.unit != "1" || !(1.0 + p.initial > 0.0)) return p.value - p.initial;
   return (1.0 + p.value) / (1.0 + p.initial) - 1.0;
+}
+
+/// Of a zero that is about a quarter or half turn off: how a servo was screwed on.
+[[nodiscard]] inline std::string turned_text(const Parameter& p) {
+  constexpr double kQuarter = std::numbers::pi / 2.0, kNear = 5.0 * std::numbers::pi / 180.0;
+  const double turns = (p.value - p.initial) / kQuarter;
+  if (p.unit != "rad" || std::abs(turns) < 0.5) return "";
+  if (std::abs(turns - std::round(turns)) * kQuarter > kNear) return "";
+  return std::abs(turns) < 1.5 ? "  A quarter turn: is the motor screwed on so?"
+                               : "  Half a turn: is the motor screwed on so?";
 }
 
 /// Changes that are not plausible: the worst, by its limits, and how many more.
@@ -43,12 +55,30 @@ inline void judge_changes(const CalibrationStep& step, const CalibrationResult& 
                                    " more by more than is plausible; are the URDF or initial "
                                    "values wrong, or do these samples not determine them?"
                              : "; is the URDF or its initial value wrong, or do these samples not "
-                               "determine it?"));
+                               "determine it?") +
+                 turned_text(*worst));
+}
+
+/// Sag and play that are surely negative: no joint yields against its load.
+inline void judge_signs(const CalibrationStep& step, const CalibrationResult& result,
+                        const Assessment& assessment, Judgement& judgement) {
+  constexpr double kSure = 3.0;  // standard deviations
+  for (const int p : step.free.parameters()) {
+    const Parameter& of = result.table[p];
+    const std::optional<double> deviation = assessment.deviation(p);
+    const bool is_below = of.value < 0.0 && deviation && of.value < -kSure * *deviation;
+    if (!is_below || !is_never_negative(*step.problem, p)) continue;
+    judgement.add(Grade::use_with_care,
+                  "'" + of.name + "' is " + reading(of.value, of.unit) +
+                      ", but a joint yields to its load and never against it: something else is "
+                      "wrong and looks like that");
+  }
 }
 
 inline void judge_values(const CalibrationStep& step, const CalibrationResult& result,
                          const Assessment& assessment, Judgement& judgement) {
   judge_changes(step, result, judgement);
+  judge_signs(step, result, assessment, judgement);
   for (const int p : assessment.at_bound) {
     judgement.add(Grade::use_with_care, "'" + result.table[p].name + "' ended at its bound " +
                                             reading(result.table[p].value, result.table[p].unit));
