@@ -17,9 +17,10 @@ Config config_from_samples(const Robot& robot, std::span<const Sample> samples) 
   try {
     text = initial_config(robot, answers_from_samples(robot, samples, {}));
   } catch (const InputError& error) {
-    throw InputError(
-        "the samples do not tell what observes what; give --config, as of 'kinecal init'.  " +
-        std::string(error.what()));
+    std::string why = error.what();  // "--arm: ...": of options that only init has
+    if (why.starts_with("--")) why.erase(0, why.find(": ") + 2);
+    throw InputError("the samples do not tell what observes what: " + why +
+                     "; write a configuration with 'kinecal init' and give --config");
   }
   Diagnostics diagnostics;
   Config config = parse_config(text, "the proposed configuration", diagnostics);

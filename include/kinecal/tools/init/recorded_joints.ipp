@@ -43,10 +43,11 @@ inline void check_joints_of(const Robot& robot, const std::vector<Sample>& sampl
       })) {
     return;
   }
-  throw InputError(fmt::format(
-      "--from: none of the joints of the samples ({}, ...) is in the URDF of '{}': is it of this "
-      "robot?",
-      *names.begin(), robot.name()));
+  throw InputError(
+      fmt::format("--from: none of the joints of the samples ({}, ...) is in the URDF of '{}'; "
+                  "give the URDF of "
+                  "their robot",
+                  *names.begin(), robot.name()));
 }
 
 /// The link from which all joints are in the samples, if both ends hang on it: the joint of a rail or a torso that
