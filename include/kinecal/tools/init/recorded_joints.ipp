@@ -45,8 +45,7 @@ inline void check_joints_of(const Robot& robot, const std::vector<Sample>& sampl
   }
   throw InputError(
       fmt::format("--from: none of the joints of the samples ({}, ...) is in the URDF of '{}'; "
-                  "give the URDF of "
-                  "their robot",
+                  "give the URDF of their robot",
                   *names.begin(), robot.name()));
 }
 
