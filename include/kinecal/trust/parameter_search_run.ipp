@@ -90,16 +90,20 @@ int ParameterSearch::simplest(const std::vector<int>& base, const Candidates& ca
 std::vector<int> ParameterSearch::like(const Whole& without, const Candidates& candidates,
                                        const std::vector<int>& chosen, int k) const {
   constexpr double kAlike = 0.9;    // share of the fall that another one explains, too
-  constexpr double kCertain = 3.0;  // standard errors
+  constexpr double kAsWell = 1.04;  // squares of errors on held-out poses: 2 %
   const auto with = [&](int c) {
     return detail::joined(without.columns, candidates[static_cast<std::size_t>(c)].columns);
   };
   const Gain own = gain_of(without, candidates[static_cast<std::size_t>(k)], k);
+  const double error = predicted(with(k), fold_).sum();
   std::vector<int> others;
   for (const Gain& gain : gains(without, candidates, chosen)) {
     if (gain.squares < kAlike * own.squares) break;
-    // Where little noise is left, a tenth of the fall can be certain, too.
-    if (certainty_of(with(k), with(gain.candidate)) <= kCertain) others.push_back(gain.candidate);
+    // Where little noise is left, a tenth of the fall can be certain, and much.
+    const std::vector<int> other = with(gain.candidate);
+    const Eigen::VectorXd squares = predicted(other, fold_);
+    const bool is_as_good = squares.size() > 0 && squares.sum() <= kAsWell * error;
+    if (is_as_good || certainty_of(with(k), other) <= kSure) others.push_back(gain.candidate);
   }
   return others;
 }
