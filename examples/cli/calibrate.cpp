@@ -182,14 +182,10 @@ std::optional<OutputFolder> output_folder(const CalibrateOptions& options) {
   return std::optional<OutputFolder>(std::in_place, options.output);
 }
 
-/// How fast is still good, if a lag was calibrated.
+/// How fast is still good, if the configuration has a lag.
 std::vector<std::string> how_fast(const Fit& fitted) {
   const CalibrationResult& result = fitted.findings.result;
-  const auto is_lag = [&](int p) { return result.table[p].name.ends_with("_lag"); };
-  if (!result.converged ||
-      std::none_of(result.calibrated.begin(), result.calibrated.end(), is_lag)) {
-    return {};
-  }
+  if (!result.converged) return {};
   const CalibrationStep& last = fitted.calibration.steps.back();
   const Eigen::VectorXd values = result.table.values();
   std::vector<std::string> sentences;
@@ -292,14 +288,14 @@ int calibrate(const CalibrateOptions& options) {
   write_reports(options, input, fitted);
   if (!options.scene.empty()) write_scene_file(options.scene, input, fitted, options.mesh_paths);
   const bool is_usable = findings.judgement.verdict != Grade::do_not_use;
-  const std::vector<JointPatch> patches = joint_patches(input.robot, findings.result.table);
   const ResultFileOptions how = file_options(options, input.robot);
   std::vector<OutputFile> files;
   if (folder && is_usable) {
     files = with_copies(options, input,
                         output_files(input.robot, {input.urdf, input.urdf_text}, fitted.calibration,
                                      findings, fitted.samples, how));
-    const RobotFiles others = robot_files(options, input, patches, files.front().content);
+    const RobotFiles others =
+        robot_files(options, input, findings.result.table, files.front().content);
     folder->write(files);
     write(others);
   }

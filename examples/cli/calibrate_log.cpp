@@ -322,8 +322,7 @@ int report(const ResultOptions& options, LogRun& run, const Findings& findings) 
                    first.samples, file_options(options, first.robot));
   std::erase_if(all, [](const OutputFile& file) { return file.name == "residuals.csv"; });
   const std::string& calibrated = all.front().content;
-  const RobotFiles others =
-      robot_files(options, first, joint_patches(first.robot, result.table), calibrated);
+  const RobotFiles others = robot_files(options, first, result.table, calibrated);
   OutputFolder folder(options.output);
   write(folder, with_copies(options, first, std::move(all)));
   write(others);

@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/reading.hpp"
@@ -58,12 +59,6 @@ KnownExplanations known_by(const StudyInput& input, const PoseChoice& choice,
     }
   }
   return known;
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Medians of random sets of so many poses.

@@ -9,6 +9,7 @@
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/results/homing_offsets.hpp"
 #include "kinecal/files/results/kinematics_yaml.hpp"
+#include "kinecal/files/results/result_files.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/patch_xacro.hpp"
 #include "kinecal/text/counted.hpp"
@@ -130,7 +131,7 @@ void check_robot_files(const ResultOptions& options, const Input& input) {
     const std::vector<XacroFile> all = read_xacro_files(of.xacro, said_when_written);
     for (std::size_t i = 1; i < all.size(); ++i) check(all[i].name);  // that it includes
   }
-  (void)robot_files(options, input, {}, input.urdf_text);
+  (void)robot_files(options, input, ParameterTable(), input.urdf_text);
 }
 
 std::set<std::string> zeros_in_servos(const RobotFileOptions& of, const Robot& robot) {
@@ -139,18 +140,14 @@ std::set<std::string> zeros_in_servos(const RobotFileOptions& of, const Robot& r
 }
 
 RobotFiles robot_files(const ResultOptions& options, const Input& input,
-                       const std::vector<JointPatch>& patches, const std::string& calibrated) {
+                       const ParameterTable& table, const std::string& calibrated) {
   const RobotFileOptions& of = options.robot_files;
   RobotFiles files;
   if (!of.kinematics.empty()) {
     const std::set<std::string> in_servos = zeros_in_servos(of, input.robot);
-    std::vector<JointPatch> origins = patches;
-    for (JointPatch& patch : origins) {
-      if (in_servos.contains(patch.joint)) patch.offset = 0.0;
-    }
-    add_kinematics(of.kinematics, input, origins, files);
+    add_kinematics(of.kinematics, input, joint_patches(input.robot, table, in_servos), files);
   }
-  if (!of.homing.empty()) add_homing(of, input, patches, files);
+  if (!of.homing.empty()) add_homing(of, input, joint_patches(input.robot, table), files);
   if (!of.xacro.empty()) add_xacro(of.xacro, input, calibrated, files);
   return files;
 }

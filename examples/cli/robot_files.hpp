@@ -28,12 +28,11 @@ void check_robot_files(const ResultOptions& options, const Input& input);
 [[nodiscard]] std::set<std::string> zeros_in_servos(const RobotFileOptions& of, const Robot& robot);
 
 /// What a calibration makes of the files.
-/// @param patches     with all zeros
+/// @param table       the calibrated parameters
 /// @param calibrated  the URDF with the calibration, as it is written
 /// @throws InputError  if a file cannot hold it
 [[nodiscard]] RobotFiles robot_files(const ResultOptions& options, const Input& input,
-                                     const std::vector<JointPatch>& patches,
-                                     const std::string& calibrated);
+                                     const ParameterTable& table, const std::string& calibrated);
 
 /// Writes all files or none, and prints what was said.
 void write(const RobotFiles& files);

@@ -37,12 +37,8 @@ SearchedFit search_and_fit(Input& input, const CalibrateOptions& options, bool g
     run(used_samples(all.fit.findings, input.samples));
   }
   all.fit.findings.search = reported(all.search);
-  Judgement& judgement = all.fit.findings.judgement;
-  const std::string why = another_robot(all.search);
-  if (!all.search.scales.empty()) {  // it has made the robot another one
-    judgement.add_causes(why.empty() ? Grade::use_with_care : Grade::do_not_use, all.search.scales);
-  } else if (!why.empty()) {
-    judgement.add_causes(Grade::do_not_use, {why});
+  if (const std::string why = another_robot(all.search); !why.empty()) {
+    all.fit.findings.judgement.add_causes(Grade::do_not_use, {why});
   }
   all.config = config_to_yaml(
       all.search.config,

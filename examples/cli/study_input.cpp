@@ -88,21 +88,13 @@ ParameterTable take_poses(const StudyFiles& files, int count, StudyInput& input)
   return made.values;
 }
 
-/// True if all features of a sample are numbers.
-bool is_finite(const Sample& sample) {
-  return std::all_of(sample.observations.begin(), sample.observations.end(), [](const auto& of) {
-    return std::all_of(of.features.begin(), of.features.end(),
-                       [](const Feature& feature) { return feature.point.allFinite(); });
-  });
-}
-
 /// Adds new poses before the recorded samples, which exist already: positions between those that were recorded, and
 /// the features of recorded samples.
 void add_poses_between(int count, std::uint64_t seed, StudyInput& input) {
   std::vector<Sample> recorded;
   std::vector<CapturePose> poses, known;
   for (std::size_t i = 0; i < input.samples.size(); ++i) {  // the others say nothing
-    if (!is_finite(input.samples[i])) continue;
+    if (!has_numbers(input.samples[i])) continue;
     recorded.push_back(input.samples[i]);
     known.push_back(input.poses[i]);
   }

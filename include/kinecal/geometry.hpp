@@ -1,9 +1,10 @@
-// Umbrella header of geometry/: jets, packets, rotations and poses.
+// Umbrella header of geometry/: jets, packets, rotations, poses and a median.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "kinecal/geometry/eigen_layout.hpp"
 #include "kinecal/geometry/jet.hpp"
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/geometry/packet.hpp"
 #include "kinecal/geometry/pose.hpp"
 #include "kinecal/geometry/rotation.hpp"

@@ -27,9 +27,6 @@ class CaptureCases : public test::ProgramTest {
     const fs::path all = test::data_folder().parent_path() / "cases";
     return fs::exists(all / name) ? all / name : fs::path{};
   }
-  [[nodiscard]] test::Outcome kinecal(const std::string& arguments) const {
-    return run(test::kinecal_program() + " " + arguments + " < /dev/null");
-  }
 
   /// Detects AprilTags in one photograph.
   /// @param finder  keys of the target

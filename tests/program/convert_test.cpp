@@ -22,9 +22,6 @@ class Convert : public test::ProgramTest {
     fs::copy(examples / "csv/columns.yaml", folder_);
     fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
   }
-  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run(fmt::format("{} {} < /dev/null", test::kinecal_program(), arguments));
-  }
 };
 
 TEST_F(Convert, TheExampleCalibratesAsTheReadmeSays) {

@@ -8,7 +8,6 @@
 #include "kinecal/files/cameras/read_camera_file.hpp"
 #include "kinecal/files/images/read_image.hpp"
 #include "kinecal/files/poses/poses.hpp"
-#include "kinecal/files/samples/read_samples.hpp"
 #include "support/paths.hpp"
 #include "support/recording.hpp"
 #include "support/run_program.hpp"
@@ -99,16 +98,6 @@ class DetectMotion : public test::ProgramTest {
     to.finish();
   }
 
-  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run(test::kinecal_program() + " " + arguments + " < /dev/null");
-  }
-  [[nodiscard]] std::vector<Sample> samples(const std::string& name) const {
-    Diagnostics diagnostics;
-    std::vector<Sample> all = read_samples((folder_ / name).string(), diagnostics);
-    diagnostics.throw_if_errors();
-    return all;
-  }
-
   std::vector<CapturePose> poses_;
 };
 
@@ -126,7 +115,7 @@ TEST_F(DetectMotion, GivesSamplesWithVelocitiesAndTheLagOfTheCamera) {
               HasSubstr("free that of what moves, camera_lag, board_lag (kinecal identify does)"));
   EXPECT_THAT(found.err, HasSubstr("0.mcap: left out "));
   EXPECT_THAT(found.err, Not(HasSubstr("single image")));
-  const std::vector<Sample> seen = samples("samples.yaml");
+  const std::vector<Sample> seen = test::samples_in(folder_ / "samples.yaml");
   EXPECT_LE(seen.size(), std::size_t{kRecordings * kImages});
   EXPECT_GE(seen.size(), std::size_t{kRecordings * kImages * 9 / 10});
   for (const Sample& sample : seen) {

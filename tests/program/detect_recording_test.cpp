@@ -7,7 +7,6 @@
 #include "kinecal/files/cameras/read_camera_file.hpp"
 #include "kinecal/files/images/png_bytes.hpp"
 #include "kinecal/files/images/read_image.hpp"
-#include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/tools/detect/image_folder.hpp"
 #include "support/paths.hpp"
 #include "support/recording.hpp"
@@ -73,16 +72,6 @@ class DetectRecording : public test::ProgramTest {
     to.finish();
   }
 
-  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run(test::kinecal_program() + " " + arguments + " < /dev/null");
-  }
-  [[nodiscard]] std::vector<Sample> samples(const std::string& name) const {
-    Diagnostics diagnostics;
-    std::vector<Sample> all = read_samples((folder_ / name).string(), diagnostics);
-    diagnostics.throw_if_errors();
-    return all;
-  }
-
   test::Tour tour_;
 };
 
@@ -94,7 +83,7 @@ TEST_F(DetectRecording, EachStandstillGivesTheSampleOfItsPhotograph) {
   record("drive.mcap", Encoding::cdr, true);
   record("drive.bag", Encoding::ros1, false);
   ASSERT_EQ(kinecal("detect photos/capture.yaml -o photos.yaml" + kPhotos).code, 0);
-  const std::vector<Sample> expected = samples("photos.yaml");
+  const std::vector<Sample> expected = test::samples_in(folder_ / "photos.yaml");
   for (const std::string bag : {"drive.mcap", "drive.bag"}) {
     const Outcome found = kinecal("detect photos/capture.yaml --bag " + bag + " -o " + bag +
                                   ".yaml --contact-sheet " + bag + ".png");
@@ -102,7 +91,7 @@ TEST_F(DetectRecording, EachStandstillGivesTheSampleOfItsPhotograph) {
     EXPECT_THAT(found.out, HasSubstr(": 4 of 4 standstills: "));
     EXPECT_THAT(found.err, HasSubstr("takes images from topic 'eye/image"));
     EXPECT_EQ(read(bag + ".png").substr(1, 3), "PNG");
-    const std::vector<Sample> seen = samples(bag + ".yaml");
+    const std::vector<Sample> seen = test::samples_in(folder_ / (bag + ".yaml"));
     ASSERT_EQ(seen.size(), expected.size());
     for (std::size_t i = 0; i < seen.size(); ++i) {
       for (std::size_t j = 0; j < tour_.names.size(); ++j) {
@@ -135,7 +124,7 @@ TEST_F(DetectRecording, ATruncatedRecordingGivesWhatItHas) {
   const Outcome found = kinecal("detect photos/capture.yaml --bag drive.bag -o samples.yaml");
   EXPECT_EQ(found.code, 0) << found.err;
   EXPECT_THAT(found.err, HasSubstr("warning: drive.bag: "));
-  EXPECT_GE(samples("samples.yaml").size(), 1U);
+  EXPECT_GE(test::samples_in(folder_ / "samples.yaml").size(), 1U);
 }
 #endif
 
@@ -147,11 +136,11 @@ TEST_F(DetectRecording, TurnedBoardsArePutRightWhereTheRobotIsKnown) {
       "detect photos/capture.yaml --images photos/images --poses photos/poses.csv --camera "
       "photos/camera.yaml --frame camera_color_optical_frame --force -o samples.yaml ";
   EXPECT_THAT(kinecal(photos).err, HasSubstr("Give --urdf, --board-link"));
-  const std::vector<Sample> before = samples("samples.yaml");
+  const std::vector<Sample> before = test::samples_in(folder_ / "samples.yaml");
   const Outcome found = kinecal(photos + "--urdf panda.urdf --board-link panda_link0");
   EXPECT_THAT(found.err, HasSubstr("note: photos/capture.yaml:2: finder 'checkerboard_finder': the "
                                    "board was turned in "));
-  const std::vector<Sample> after = samples("samples.yaml");
+  const std::vector<Sample> after = test::samples_in(folder_ / "samples.yaml");
   ASSERT_EQ(after.size(), before.size());
   std::size_t turned = 0;
   for (std::size_t i = 0; i < after.size(); ++i) {

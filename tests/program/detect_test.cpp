@@ -23,9 +23,6 @@ class Detect : public test::ProgramTest {
     const std::size_t frame = config.find("frame: ", camera) + 7;
     frame_ = config.substr(frame, config.find('\n', frame) - frame);
   }
-  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run(test::kinecal_program() + " " + arguments + " < /dev/null");
-  }
   [[nodiscard]] Outcome detect(const std::string& more = "") const {
     return kinecal(
         "detect photos/capture.yaml --images photos/images --poses photos/poses.csv "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 #include "kinecal/files/messages/make.ipp"
 #include "kinecal/files/messages/message_fields.ipp"
 #include "kinecal/files/recordings/bag_output.hpp"
+#include "kinecal/files/samples/read_samples.hpp"
 
 namespace kinecal::test {
 
@@ -129,6 +131,14 @@ inline void play(const Tour& tour, const std::function<void(Stamp, double time)>
     joints(kTourStart + since, time);
     if (i % kPerImage == 0) image(kTourStart + since, time);
   }
+}
+
+/// The samples of a file that has no errors.
+inline std::vector<Sample> samples_in(const std::filesystem::path& file) {
+  Diagnostics diagnostics;
+  std::vector<Sample> samples = read_samples(file.string(), diagnostics);
+  diagnostics.throw_if_errors();
+  return samples;
 }
 
 }  // namespace kinecal::test

@@ -19,10 +19,10 @@ inline constexpr bool kIsSlow = true;
 #endif
 
 /// The number of repetitions: `full`; `few` where tests are slow.  KINECAL_REPETITIONS replaces either by a
-/// number, at most `most`, or `full` where that is more.
-inline int repetitions(int full, int few, int most = 0) {
+/// number, at most `full`.
+inline int repetitions(int full, int few) {
   if (const char* given = std::getenv("KINECAL_REPETITIONS")) {
-    return std::clamp(std::atoi(given), 1, std::max(full, most));
+    return std::clamp(std::atoi(given), 1, full);
   }
   return kIsSlow ? std::min(few, full) : full;
 }

@@ -16,6 +16,7 @@
 #include <string>
 #include <thread>
 
+#include "support/paths.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace kinecal::test {
@@ -67,6 +68,10 @@ class ProgramTest : public FolderTest {
  protected:
   /// Runs a program with arguments through the shell.
   [[nodiscard]] Outcome run(const std::string& call) const { return run_in(folder_, call); }
+  /// Runs kinecal with nobody to ask.
+  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
+    return run(kinecal_program() + " " + arguments + " < /dev/null");
+  }
 };
 
 }  // namespace kinecal::test

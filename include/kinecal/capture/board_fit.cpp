@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "kinecal/capture/corner_fit.ipp"
+#include "kinecal/geometry/median.hpp"
 
 namespace kinecal {
 
@@ -83,7 +84,7 @@ namespace {
     }
     gaps.push_back(nearest);
   }
-  return median_of(gaps);
+  return gaps.empty() ? 0.0 : median_of(std::move(gaps));
 }
 
 [[nodiscard]] bool is_flat(const std::vector<TargetCorner>& corners) {

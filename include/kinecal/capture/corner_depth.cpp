@@ -8,7 +8,10 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
+
+#include "kinecal/geometry/median.hpp"
 
 namespace kinecal {
 
@@ -63,9 +66,7 @@ struct PointNearCorner {
   std::vector<double> errors;
   errors.reserve(near.size());
   for (const auto& p : near) errors.push_back(std::abs(p.place.dot(depth) - p.value.z()));
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return *middle;
+  return median_of(std::move(errors));
 }
 
 /// The plane of 1/z through three of the points with the least median error.

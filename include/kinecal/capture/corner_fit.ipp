@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "kinecal/capture/homography.hpp"
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/sensors/lens.hpp"
 
 namespace kinecal::detail {
@@ -31,20 +32,13 @@ struct CornerFit {
   double typical = std::numeric_limits<double>::infinity();
 };
 
-[[nodiscard]] inline double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Distances, their median, and weights of the next pass.
 inline void weigh(CornerFit& fit) {
   std::vector<double> off;
   for (const Eigen::Vector2d& miss : fit.misses) {
     off.push_back(miss.allFinite() ? miss.norm() : std::numeric_limits<double>::infinity());
   }
-  fit.typical = median_of(off);
+  fit.typical = off.empty() ? 0.0 : median_of(off);
   const double reach = 3.0 * std::max(kSharpCorner, fit.typical);
   for (std::size_t i = 0; i < off.size(); ++i) {
     const double ratio = off[i] / reach;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "kinecal/geometry/median.hpp"
+
 namespace kinecal {
 
 namespace detail {
@@ -37,12 +39,6 @@ std::string one_digit(double value) {
     profile.push_back(sum / lines);
   }
   return profile;
-}
-
-[[nodiscard]] double edge_median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace detail
@@ -89,8 +85,8 @@ std::string edge_fault(const std::vector<EdgeMeasure> (&edges)[2], const TargetQ
       widths.push_back(e.width);
       bleeds.push_back(e.bleed);
     }
-    width = std::max(width, detail::edge_median(widths));
-    bleed = std::max(bleed, detail::edge_median(bleeds));
+    width = std::max(width, median_of(widths));
+    bleed = std::max(bleed, median_of(bleeds));
   }
   if (width > quality.max_edge_width) {
     return "blurred: edges are " + detail::one_digit(width) + " pixels wide, at most " +

@@ -118,4 +118,12 @@ struct Sample {
   }
 };
 
+/// True if all points of a sample are numbers.
+[[nodiscard]] inline bool has_numbers(const Sample& sample) {
+  return std::all_of(sample.observations.begin(), sample.observations.end(), [](const auto& of) {
+    return std::all_of(of.features.begin(), of.features.end(),
+                       [](const Feature& feature) { return feature.point.allFinite(); });
+  });
+}
+
 }  // namespace kinecal

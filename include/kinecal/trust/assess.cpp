@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/compared_frames.hpp"
 #include "kinecal/trust/inside_bounds.ipp"
@@ -87,10 +89,7 @@ namespace {
   for (const KnownPoint& point : workspace_map(problem, step, values, kPoses)) {
     deviations.push_back(point.deviation);
   }
-  if (deviations.empty()) return 0.0;
-  const auto middle = deviations.begin() + std::ssize(deviations) / 2;
-  std::nth_element(deviations.begin(), middle, deviations.end());
-  return *middle;
+  return deviations.empty() ? 0.0 : median_of(std::move(deviations));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/identify.hpp"
 #include "kinecal/trust/parameter_search.hpp"
@@ -175,9 +176,8 @@ class Identification {
     for (std::size_t t = 0; t < sigmas_.size(); ++t) {
       std::vector<double>& all = residuals[t];
       if (all.empty()) continue;
-      const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-      std::nth_element(all.begin(), middle, all.end());
-      const double sigma = std::max(kOfMedian * *middle, std::numeric_limits<double>::min());
+      const double sigma =
+          std::max(kOfMedian * median_of(std::move(all)), std::numeric_limits<double>::min());
       if (std::abs(sigma - sigmas_[t]) <= kSame * sigma) continue;
       sigmas_[t] = sigma;
       step_.set_sigma(static_cast<int>(t), sigma);

@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/stamp_jitter.ipp"
 
@@ -50,7 +51,7 @@ struct LagRows {
   for (const RowBlock& block : rows.fit.blocks) {
     const auto found = variances.find(block.term);
     if (found == variances.end()) continue;
-    const double variance = middle_number(found->second) / kept;
+    const double variance = median_of(found->second) / kept;
     if (variance > 0.0) sigma.segment(block.first, block.size).setConstant(std::sqrt(variance));
   }
   return sigma;

@@ -5,16 +5,17 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "kinecal/geometry/median.hpp"
 
 namespace kinecal {
 
 double robust_sigma(std::vector<double> distances, int components) {
   if (distances.empty()) return 0.0;
-  const auto middle = distances.begin() + std::ssize(distances) / 2;
-  std::nth_element(distances.begin(), middle, distances.end());
   // Median of chi-square, Wilson and Hilferty: k (1 - 2 / 9k)^3; exact to 2 % for one component.
   const double k = components;
-  return *middle / std::sqrt(k * std::pow(1.0 - 2.0 / (9.0 * k), 3.0));
+  return median_of(std::move(distances)) / std::sqrt(k * std::pow(1.0 - 2.0 / (9.0 * k), 3.0));
 }
 
 double detail::tail_factor(std::vector<double> distances, int components, double sigma) {

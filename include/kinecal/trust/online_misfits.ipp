@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/online_inside.ipp"
 
@@ -56,12 +57,11 @@ inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator
     if (squares[i] * rows[worst] > squares[worst] * rows[i]) worst = i;
   }
   if (means.empty()) return std::nullopt;
-  const auto middle = means.begin() + std::ssize(means) / 2;
-  std::nth_element(means.begin(), middle, means.end());
   // The median of chi-square is about n (1 - 2 / (9 n))^3; residuals of a fit are smaller than
   // noise.
   const double n = rows[worst], all = problem->num_residuals();
-  const double usual = *middle / std::pow(1.0 - 2.0 / (9.0 * n), 3.0) * (all / freedom);
+  const double usual =
+      median_of(std::move(means)) / std::pow(1.0 - 2.0 / (9.0 * n), 3.0) * (all / freedom);
   if (!(usual > 0.0) || !(squares[worst] / n > detail::stated_square(*problem))) {
     return std::nullopt;
   }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/parameters/joint_model.hpp"
 #include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/trust/lag_rows.ipp"
@@ -15,6 +16,14 @@
 namespace kinecal {
 namespace detail {
 namespace {
+
+/// True if joints move a sensor.
+[[nodiscard]] bool is_moved(const MountedSensor& sensor) {
+  const auto moves_it = [](const ChainJoint& joint) { return moves(joint.type); };
+  return std::any_of(sensor.chains().begin(), sensor.chains().end(), [&](const SampledChain& of) {
+    return std::any_of(of.chain().joints.begin(), of.chain().joints.end(), moves_it);
+  });
+}
 
 /// A sample whose residuals change with the stamp.
 struct MovingSample {
@@ -94,7 +103,7 @@ struct MovingSample {
     limit.fastest = std::max(limit.fastest, fastest_joint(sample).value_or(0.0));
   }
   const double stamps = limit.jitter > 0.0 ? limit.jitter : limit.jitter_most;
-  const double each = middle_number(rates) * std::hypot(stamps, limit.lag_deviation);
+  const double each = median_of(rates) * std::hypot(stamps, limit.lag_deviation);
   limit.speed = each > 0.0 ? 1.0 / (3.0 * each) : limit.fastest;
   return limit;
 }
@@ -139,6 +148,10 @@ std::vector<SpeedLimit> speed_limits(const AnyProblem& problem, const FreeSet& f
     for (const int s : problem.term(t).sensors) {
       const MountedSensor& sensor = problem.sensors()[static_cast<std::size_t>(s)];
       const int lag = lag_of(sensor);
+      if (lag < 0 && detail::is_moved(sensor)) {
+        names.clear();
+        break;
+      }
       if (lag < 0) continue;
       names += (names.empty() ? "" : " and ") + sensor.mount().parameter_prefix();
       if (free.column(lag) >= 0) columns.push_back(free.column(lag));

@@ -2,7 +2,8 @@
 //
 // An error of the stamp of t seconds changes all residuals of a sample by c t, c being the sum of their
 // derivatives by the lags of all sensors: camera and target are both where they were at another time.
-// So the lags of all that moves have to be in the table, free or held.  With residuals in standard deviations of their noise, along u = c / |c|
+// So the lags of all that moves have to be in the table, free or held.  With residuals in standard deviations
+// of their noise, along u = c / |c|
 //
 //   (u r)^2 / (1 - h)  =  tau^2 + jitter^2 |c|^2    in the mean        h: leverage of u
 //
@@ -42,7 +43,7 @@ struct SpeedLimit {
 /// The limit of each error block whose sensors have a lag, from a calibration at its solution.
 /// @param values   of all parameters of the table
 /// @param samples  those of the problem; with joint velocities
-/// @returns  none of a block with fewer than ten samples that move
+/// @returns  none of a block with fewer than ten samples that move, or with a sensor that moves and has no lag
 /// @throws std::domain_error  if a residual is undefined
 [[nodiscard]] std::vector<SpeedLimit> speed_limits(const AnyProblem& problem, const FreeSet& free,
                                                    ParameterValues values,

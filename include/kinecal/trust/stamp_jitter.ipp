@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "kinecal/geometry/median.hpp"
+
 namespace kinecal::detail {
 
 /// A sample along the change of its residuals with the stamp.
@@ -27,13 +29,6 @@ struct StampVariance {
   }
 };
 
-/// Median of some numbers, of which there is at least one.
-[[nodiscard]] inline double middle_number(std::vector<double> numbers) {
-  const auto middle = numbers.begin() + std::ssize(numbers) / 2;
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  return *middle;
-}
-
 /// A first guess, from medians of the slowest and the fastest third.
 /// @param errors  sorted by slopes, at least three
 [[nodiscard]] inline StampVariance variance_of_thirds(const std::vector<StampError>& errors) {
@@ -44,7 +39,7 @@ struct StampVariance {
     for (auto at = errors.begin() + first; at != errors.begin() + first + third; ++at) {
       numbers.push_back(number(*at));
     }
-    return middle_number(std::move(numbers));
+    return median_of(std::move(numbers));
   };
   const auto square = [](const StampError& e) { return e.square / kMedianOfSquare; };
   const auto slope = [](const StampError& e) { return e.slope * e.slope; };

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -17,6 +18,8 @@
 #include <vector>
 
 #include "kinecal/config/doubts/cause_solver.ipp"
+#include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/parameters/joint_models.hpp"
 #include "kinecal/trust/assess.hpp"
 
 namespace kinecal::detail {
@@ -56,6 +59,26 @@ struct FreeLength {
     }
   }
   return samples;
+}
+
+/// A configuration that frees the zeros of all joints in place of lengths and joint models.  Whole frames are
+/// mounts and stay.
+[[nodiscard]] inline Config with_zeros_for_lengths(Config config, const Robot& robot) {
+  for (StepConfig& step : config.steps) {
+    std::erase_if(step.free_frames, [&](const FreeFrameConfig& frame) {
+      const auto is_held = [](bool free) { return !free; };
+      return robot.has_joint(frame.name) && moves(robot.joint(frame.name).type) &&
+             std::any_of(frame.axes.begin(), frame.axes.end(), is_held);
+    });
+    std::erase_if(step.free_params, [&](const FreeParamConfig& free) {
+      return robot.has_joint(free.name) || joint_model_parameter(robot, free.name);
+    });
+    for (const Joint* joint : joints_between(config, robot)) {
+      if (moves(joint->type) && !joint->mimic)
+        step.free_params.push_back({joint->name, step.place});
+    }
+  }
+  return config;
 }
 
 /// The root of the mean squared change of lengths, metres.

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/config/doubts/judge_causes.hpp"
 
-#include <algorithm>
-
 #include "kinecal/config/doubts/check_offsets.hpp"
 #include "kinecal/config/doubts/held_frame.ipp"
 #include "kinecal/config/doubts/likely_causes.hpp"
@@ -37,11 +35,6 @@ void judge_likely(const CalibrationInput& input, JudgedResult& judged) {
   if (const auto held = held_frame(input, judged)) {
     judged.judgement.add_causes(Grade::use_with_care, {*held});
   }
-  const auto names_scale = [](const std::string& reason) {
-    return reason.starts_with("with the points of ");
-  };
-  const std::vector<std::string>& named = judged.judgement.reasons;
-  if (std::any_of(named.begin(), named.end(), names_scale)) return;  // a search has found it
   std::vector<std::string> scales = wrong_scales(input.config, input.robot, input.samples,
                                                  judged.result.table, judged.assessments.back());
   for (std::string& scale : scales) scale += "; are its lengths right?";

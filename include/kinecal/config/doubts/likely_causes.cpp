@@ -13,6 +13,7 @@
 #include "kinecal/config/doubts/cause_solver.ipp"
 #include "kinecal/config/doubts/hypotheses.ipp"
 #include "kinecal/config/doubts/some_samples.ipp"
+#include "kinecal/text/first_names.hpp"
 
 namespace kinecal {
 
@@ -79,6 +80,24 @@ constexpr double kExplainsScale = 0.25;
   return found;
 }
 
+/// The models whose points fit better at another scale, if zeros are free in place of lengths.
+[[nodiscard]] std::vector<Cause> scales_with_zeros(const Config& config, const Robot& robot,
+                                                   const std::vector<Sample>& samples,
+                                                   const std::vector<FreeLength>& lengths) {
+  const Config zeros = with_zeros_for_lengths(config, robot);
+  const CauseSolver solver{zeros, robot, plain_calibrator()};
+  const auto now = solve_samples(solver, zeros, samples);
+  if (!now) return {};
+  std::vector<std::string> names;
+  for (const FreeLength& length : lengths) names.push_back(length.name);
+  std::vector<Cause> found = scale_causes(solver, samples, *now, kExplainsScale);
+  for (Cause& cause : found) {
+    cause.sentence +=
+        " with zeros in place of " + first_names(names) + ", which may have absorbed it";
+  }
+  return found;
+}
+
 /// The sentences, lowest cost first; equal costs in the order of the hypotheses.  Drops causes that
 /// only explain a part of a better one, or that change the samples in the same way.
 [[nodiscard]] std::vector<std::string> sentences(std::vector<Cause> found) {
@@ -141,6 +160,8 @@ std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
   if (!found.empty()) return detail::sentences(std::move(found));
   const std::vector<detail::FreeLength> lengths = detail::free_lengths(robot, solution, last);
   if (lengths.size() < 2) return {};
+  found = detail::scales_with_zeros(config, robot, some, lengths);
+  if (!found.empty()) return detail::sentences(std::move(found));
   const std::set<std::string> pixels = detail::pixel_models(config);
   for (const ModelConfig& model : detail::models_of(config)) {
     if (pixels.contains(model.name)) continue;
@@ -148,15 +169,6 @@ std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
     if (scaled) found.push_back(*std::move(scaled));
   }
   return detail::sentences(std::move(found));
-}
-
-std::vector<std::string> scales_without_lengths(const Config& config, const Robot& robot,
-                                                std::span<const Sample> samples) {
-  const detail::CauseSolver solver{config, robot, detail::plain_calibrator()};
-  const std::vector<Sample> some = detail::some_of(samples);
-  const auto now = detail::solve_samples(solver, config, some);
-  if (!now) return {};
-  return detail::sentences(detail::scale_causes(solver, some, *now, detail::kExplainsScale));
 }
 
 }  // namespace kinecal

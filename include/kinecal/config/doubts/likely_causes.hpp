@@ -33,8 +33,9 @@ using Calibrator = std::function<CalibrationResult(const Calibration&)>;
                                                      const Calibrator& solve = {});
 
 /// Sentences about models whose points have another scale, in a fit that is not bad: a board with larger
-/// squares than configured.  At the right scale the noise is half as large, or free lengths, which have
-/// absorbed the scale, all change by less.  Empty for most calibrations.
+/// squares than configured.  At the right scale the noise is half as large; or it is, where free lengths and
+/// joint models, which have absorbed the scale, are held and zeros are free; or free lengths all change by less.
+/// Empty for most calibrations.
 /// @param samples   the fitted samples
 /// @param solution  the parameters that fit them; the start
 /// @param last      the assessment of the last step
@@ -42,12 +43,5 @@ using Calibrator = std::function<CalibrationResult(const Calibration&)>;
                                                     std::span<const Sample> samples,
                                                     const ParameterTable& solution,
                                                     const Assessment& last);
-
-/// Sentences about models whose points have another scale: at the right one, the noise of a configuration that frees
-/// no lengths is half as large.
-/// @param config  without lengths that could absorb a scale
-[[nodiscard]] std::vector<std::string> scales_without_lengths(const Config& config,
-                                                              const Robot& robot,
-                                                              std::span<const Sample> samples);
 
 }  // namespace kinecal

@@ -16,15 +16,10 @@
 #include "kinecal/config/doubts/sensor_points.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/registry.hpp"
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 
 namespace kinecal::detail {
-
-[[nodiscard]] inline double median_of(std::vector<double> numbers) {
-  const auto at = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), at, numbers.end());
-  return *at;
-}
 
 double spread_of(std::span<const Vector3<double>> points) {
   if (points.empty()) return 0.0;

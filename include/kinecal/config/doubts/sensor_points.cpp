@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kinecal/config/doubts/camera_features.ipp"
 #include "kinecal/config/doubts/occurrences.hpp"
 #include "kinecal/config/doubts/point_spreads.ipp"
 #include "kinecal/config/doubts/same_feature.ipp"
 #include "kinecal/config/registry.hpp"
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 
 namespace kinecal::detail {
@@ -110,9 +112,7 @@ inline bool report_absurd_points(const RecordedPoints& recorded, std::span<const
     center /= static_cast<double>(recorded.points.size());
   }
   for (const auto& point : recorded.points) sizes.push_back((point - center).norm());
-  const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), at, sizes.end());
-  return *at;  // half of the points are as large
+  return median_of(std::move(sizes));  // half of the points are as large
 }
 
 /// Error or doubt: points further away than the robot's size.

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
+
+#include "kinecal/geometry/median.hpp"
 
 namespace kinecal::detail {
 
@@ -52,10 +55,7 @@ void JointTrack::sort() {
 [[nodiscard]] inline Stamp usual_period(const std::vector<Stamp>& stamps) {
   std::vector<Stamp> periods;
   for (std::size_t i = 1; i < stamps.size(); ++i) periods.push_back(stamps[i] - stamps[i - 1]);
-  if (periods.empty()) return {};
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return *middle;
+  return periods.empty() ? Stamp{} : median_of(std::move(periods));
 }
 
 std::vector<Standstill> JointTrack::rests(const std::vector<std::size_t>& joints,

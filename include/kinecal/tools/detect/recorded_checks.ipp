@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/tools/detect/listed.ipp"
 #include "kinecal/tools/detect/raw_view.ipp"
@@ -46,12 +47,6 @@ inline void report_messages(const RecordedSurvey& survey, const std::vector<View
     }
     if (!topic.image_part.empty()) diagnostics.warning({file, 0}, about + topic.image_part);
   }
-}
-
-[[nodiscard]] inline std::int64_t median_of(std::vector<std::int64_t> numbers) {
-  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  return *middle;
 }
 
 /// An error if camera and joints never overlap in time; a doubt if their clocks seem to differ.

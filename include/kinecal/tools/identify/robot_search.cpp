@@ -16,7 +16,6 @@
 #include "kinecal/text/first_names.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/reading.hpp"
-#include "kinecal/tools/identify/scale_or_lengths.ipp"
 
 namespace kinecal {
 
@@ -114,7 +113,6 @@ RobotSearch search_robot(const Config& config, const Robot& robot, std::span<con
   detail::hold_in_search(limits.hold, problem, calibration.steps.front().unknown_frames, all.task);
   all.found = identify(calibration, samples, all.task.base, all.task.candidates);
   all.config = identified_config(config, all.task, all.found, problem);
-  all.scales = detail::scales_in_lengths(config, robot, samples, problem, all);
   Diagnostics of_others;  // what is not free any more
   hold_parameters(all.config, limits.hold, of_others);
   return all;

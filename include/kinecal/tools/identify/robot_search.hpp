@@ -20,8 +20,6 @@ struct RobotSearch {
   IdentifyTask task;
   Identified found;
   Config config;  ///< that frees what was found
-  /// Sentences about points of another scale, which the lengths that were freed may have absorbed.
-  std::vector<std::string> scales = {};
 };
 
 /// What a search leaves out.

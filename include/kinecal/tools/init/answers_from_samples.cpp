@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <string>
@@ -141,7 +142,8 @@ void add_camera(const Robot& robot, std::span<const Sample> samples, const SeenS
 InitAnswers answers_from_samples(const Robot& robot, std::span<const Sample> all,
                                  InitAnswers given) {
   if (all.empty()) throw InputError("--from: there are no samples");
-  const std::vector<Sample> samples = detail::finite(all);
+  std::vector<Sample> samples;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(samples), has_numbers);
   if (samples.empty()) throw InputError("--from: each sample has a feature that is not a number");
   detail::check_joints_of(robot, samples);
   if (samples.size() == 1)

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <set>
 #include <span>
 #include <string>
@@ -18,19 +17,6 @@
 #include "kinecal/tools/init/robot_parts.hpp"
 
 namespace kinecal::detail {
-
-/// The samples without those that have a feature which is not a number: a reader of them says so.
-[[nodiscard]] inline std::vector<Sample> finite(std::span<const Sample> samples) {
-  std::vector<Sample> all;
-  std::copy_if(samples.begin(), samples.end(), std::back_inserter(all), [](const Sample& sample) {
-    return std::all_of(
-        sample.observations.begin(), sample.observations.end(), [](const Observation& seen) {
-          return std::all_of(seen.features.begin(), seen.features.end(),
-                             [](const Feature& feature) { return feature.point.allFinite(); });
-        });
-  });
-  return all;
-}
 
 /// @throws InputError  if the samples have joints, but none of the robot's
 inline void check_joints_of(const Robot& robot, const std::vector<Sample>& samples) {
