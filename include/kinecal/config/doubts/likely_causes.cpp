@@ -160,14 +160,13 @@ std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
   if (!found.empty()) return detail::sentences(std::move(found));
   const std::vector<detail::FreeLength> lengths = detail::free_lengths(robot, solution, last);
   if (lengths.size() < 2) return {};
-  found = detail::scales_with_zeros(config, robot, some, lengths);
-  if (!found.empty()) return detail::sentences(std::move(found));
   const std::set<std::string> pixels = detail::pixel_models(config);
   for (const ModelConfig& model : detail::models_of(config)) {
     if (pixels.contains(model.name)) continue;
     auto scaled = detail::absorbed_scale(solver, some, model.name, *now, lengths);
     if (scaled) found.push_back(*std::move(scaled));
   }
+  if (found.empty()) found = detail::scales_with_zeros(config, robot, some, lengths);
   return detail::sentences(std::move(found));
 }
 

@@ -33,8 +33,9 @@ using Calibrator = std::function<CalibrationResult(const Calibration&)>;
                                                      const Calibrator& solve = {});
 
 /// Sentences about models whose points have another scale, in a fit that is not bad: a board with larger
-/// squares than configured.  At the right scale the noise is half as large; or it is, where free lengths and
-/// joint models, which have absorbed the scale, are held and zeros are free; or free lengths all change by less.
+/// squares than configured.  At the right scale the noise is half as large; or free lengths, which have
+/// absorbed the scale, all change by less; or the noise is half as large where zeros are free in place of lengths
+/// and joint models.
 /// Empty for most calibrations.
 /// @param samples   the fitted samples
 /// @param solution  the parameters that fit them; the start
