@@ -384,8 +384,8 @@ std::string joint_zeros_text(const Robot& robot, const std::string& urdf_text,
       if (robot.has_joint(free.name)) patches.push_back({free.name, 1.0, {}});
     }
   }
-  const OffsetPlaces places = offset_places(urdf_text, options.urdf, robot, patches);
   if (patches.empty()) return "";
+  const OffsetPlaces places = offset_places(urdf_text, options.urdf, robot, patches);
   const std::string_view param = "<param name=\"offset\"> of <ros2_control>";
   if (places.rising.empty()) return fmt::format("joint zeros: calibrate adds them to {}\n", param);
   std::string text = "joint zeros: calibrate writes ";
@@ -395,10 +395,10 @@ std::string joint_zeros_text(const Robot& robot, const std::string& urdf_text,
         fmt::format("those of {} into {}, others ", fmt::join(places.ros2_control, ", "), param);
   }
   text += "into <calibration rising>, which ";
-  return text + (goes_into_rising(urdf_text, options.urdf, robot, patches)
-                     ? "robot_state_publisher, MoveIt and the UR driver do not read; "
-                       "'calibrate --offsets origin' moves the joints' origins instead\n"
-                     : "this URDF has already\n");
+  return text + (places.has_calibration
+                     ? "this URDF has already\n"
+                     : "robot_state_publisher, MoveIt and the UR driver do not read; "
+                       "'calibrate --offsets origin' moves the joints' origins instead\n");
 }
 
 }  // namespace
