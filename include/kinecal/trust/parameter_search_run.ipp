@@ -95,15 +95,17 @@ std::vector<int> ParameterSearch::like(const Whole& without, const Candidates& c
     return detail::joined(without.columns, candidates[static_cast<std::size_t>(c)].columns);
   };
   const Gain own = gain_of(without, candidates[static_cast<std::size_t>(k)], k);
-  const double error = predicted(with(k), fold_).sum();
+  const Eigen::VectorXd of_own = predicted(with(k), fold_);
+  const auto is_as_good = [&](const std::vector<int>& other) {
+    const Eigen::VectorXd of_other = predicted(other, fold_);
+    return (of_other.size() > 0 && of_other.sum() <= kAsWell * of_own.sum()) ||
+           certainty(of_other, of_own) <= kSure || certainty_of(with(k), other) <= kSure;
+  };
   std::vector<int> others;
   for (const Gain& gain : gains(without, candidates, chosen)) {
     if (gain.squares < kAlike * own.squares) break;
     // Where little noise is left, a tenth of the fall can be certain, and much.
-    const std::vector<int> other = with(gain.candidate);
-    const Eigen::VectorXd squares = predicted(other, fold_);
-    const bool is_as_good = squares.size() > 0 && squares.sum() <= kAsWell * error;
-    if (is_as_good || certainty_of(with(k), other) <= kSure) others.push_back(gain.candidate);
+    if (is_as_good(with(gain.candidate))) others.push_back(gain.candidate);
   }
   return others;
 }
