@@ -1,8 +1,9 @@
-// kinecal camera: shows a camera file, and writes it as camera_info.
+// kinecal camera: shows a camera file, and writes it as camera_info, or as Kalibr or OpenCV read it.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
 #include <span>
+#include <stdexcept>
 #include <string>
 
 #include "commands.hpp"
@@ -54,9 +55,18 @@ int camera(const CameraOptions& options) {
   print_camera(camera);
   if (options.output.empty()) return kDone;
   check_size(camera, options.file);
-  write_text_file(options.output, options.keys == "message"
-                                      ? to_camera_message_yaml(camera)
-                                      : to_camera_info_yaml(camera, options.name));
+  const auto text = [&] {
+    if (options.keys == "message") return to_camera_message_yaml(camera);
+    if (options.keys == "kalibr")
+      return to_kalibr_yaml(camera, options.name == CameraOptions{}.name ? "cam0" : options.name);
+    if (options.keys == "opencv") return to_opencv_yaml(camera);
+    return to_camera_info_yaml(camera, options.name);
+  };
+  try {
+    write_text_file(options.output, text());
+  } catch (const std::invalid_argument& e) {
+    throw InputError(fmt::format("{}: {}; nothing was written", options.file, e.what()));
+  }
   say("wrote {}\n", options.output);
   return kDone;
 }

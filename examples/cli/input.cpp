@@ -12,6 +12,7 @@
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/choose_images.hpp"
+#include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/config/read_config.hpp"
@@ -166,6 +167,7 @@ Input read_input(const InputOptions& options) {
     if (options.recorded == Recorded::before) {
       add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
     }
+    choose_lenses(input.config, input.samples, diagnostics);
     choose_images(input.config, input.robot, input.samples, diagnostics);
     is_open ? leave_open(input, options) : assemble_input(input, options);
     return input;

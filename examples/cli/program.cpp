@@ -703,16 +703,17 @@ void add_camera(CLI::App& command, CameraOptions& options) {
       ->required()
       ->type_name("FILE");
   CLI::Option* output =
-      command
-          .add_option("--output", options.output, "write the camera to this file, as camera_info")
+      command.add_option("--output", options.output, "write the camera to this file")
           ->type_name("FILE");
   command
-      .add_option("--keys", options.keys,
-                  "file: keys as in files of camera drivers; message: as in the ROS 2 message")
-      ->check(CLI::IsMember({"file", "message"}))
+      .add_option(
+          "--keys", options.keys,
+          "file: keys as in files of camera drivers; message: as in the ROS 2 message; kalibr "
+          "or opencv: as these read it")
+      ->check(CLI::IsMember({"file", "message", "kalibr", "opencv"}))
       ->needs(output)
       ->capture_default_str();
-  command.add_option("--name", options.name, "camera_name in the file")
+  command.add_option("--name", options.name, "camera_name in the file; cam0 for Kalibr")
       ->needs(output)
       ->capture_default_str();
   command.add_flag("--force", options.force, "replace the file that is there")->needs(output);

@@ -7,6 +7,7 @@
 #include "kinecal/config/capture/session_end.hpp"
 #include "kinecal/config/capture/session_follower.hpp"
 #include "kinecal/config/choose_images.hpp"
+#include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/config.hpp"
 #include "kinecal/config/config_to_yaml.hpp"
 #include "kinecal/config/doubts/check_offsets.hpp"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "kinecal/sensors/depth_camera.hpp"
-#include "kinecal/sensors/pinhole_camera.hpp"
+#include "kinecal/sensors/lens_camera.hpp"
 
 namespace kinecal {
 namespace {

@@ -65,7 +65,7 @@ namespace {
     if (other.typical < kBetter * best.typical) best = std::move(other);
   };
   if (best.typical <= kGood) return best;
-  if (const auto lens = known_lens(camera)) take(view.fit(*lens));
+  if (const auto lens = known_lens(camera, view)) take(view.fit(*lens));
   if (best.typical <= kGood || view.plane.size() < kForLens) return best;
   take(best_division(view, camera));
   if (best.typical > kGood && view.plane.size() >= kForSquare) {

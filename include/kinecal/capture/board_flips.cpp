@@ -17,12 +17,12 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// (x / z, y / z) of a camera's pixels.
-[[nodiscard]] std::vector<Eigen::Vector2d> rays_of(const Observation& camera) {
+/// Directions of a camera's pixels.
+[[nodiscard]] std::vector<Vector3<double>> rays_of(const Observation& camera) {
   const Lens lens(camera_info_of(camera));
-  std::vector<Eigen::Vector2d> rays;
+  std::vector<Vector3<double>> rays;
   for (const Feature& f : camera.features) {
-    rays.emplace_back(lens.ray(f.point.x(), f.point.y()).head<2>());
+    rays.push_back(lens.ray(f.point.x(), f.point.y()));
   }
   return rays;
 }

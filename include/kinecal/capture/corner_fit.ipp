@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -90,18 +91,25 @@ struct PlaneView {
   return {same, same};
 }
 
-/// The lens of camera_info; nullopt if it has none, or one that kinecal does not know.
-[[nodiscard]] inline std::optional<Straightening> known_lens(const CameraInfo& info) {
-  const auto is_zero = [](double number) { return number == 0.0; };
-  if (std::all_of(info.d.begin(), info.d.end(), is_zero)) return std::nullopt;
+/// The lens of camera_info; nullopt if it has none, or one that kinecal does not know.  Its pinhole looks at
+/// the view: so a view far from the axis of a fisheye is straight, too.
+[[nodiscard]] inline std::optional<Straightening> known_lens(const CameraInfo& info,
+                                                             const PlaneView& view) {
+  if (!is_raw(info, ImageKind::automatic)) return std::nullopt;
   try {
     const Lens lens(info, ImageKind::raw);
     const double focal = lens.focal_length();
+    std::vector<Vector3<double>> seen;
+    for (const Eigen::Vector2d& pixel : view.pixels) {
+      const Vector3<double> ray = lens.ray(pixel.x(), pixel.y());
+      if (ray.allFinite()) seen.push_back(ray);
+    }
+    const Matrix3<double> turn = turn_to_axis(seen);
     return Straightening{[=](const Eigen::Vector2d& pixel) -> Eigen::Vector2d {
-                           return focal * lens.ray(pixel.x(), pixel.y()).head<2>();
+                           return focal * (turn * lens.ray(pixel.x(), pixel.y())).hnormalized();
                          },
                          [=](const Eigen::Vector2d& p) {
-                           return lens.project({p.x() / focal, p.y() / focal, 1.0});
+                           return lens.project(turn.transpose() * (p / focal).homogeneous());
                          }};
   } catch (const std::exception&) {
     return std::nullopt;

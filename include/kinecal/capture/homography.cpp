@@ -62,9 +62,11 @@ std::optional<Pose<double>> plane_pose(const std::vector<Eigen::Vector2d>& plane
                                        const std::vector<Eigen::Vector2d>& rays) {
   const auto h = homography(plane, rays);
   if (!h) return std::nullopt;
-  // H = s (r1 r2 t), and the plane's origin is in front of the camera.
+  // H = s (r1 r2 t), and the points are in front of the camera.
   const double scale = std::sqrt(h->col(0).norm() * h->col(1).norm());
-  const Matrix3<double> m = *h / ((*h)(2, 2) < 0.0 ? -scale : scale);
+  double depths = 0.0;
+  for (const Eigen::Vector2d& p : plane) depths += h->row(2).dot(p.homogeneous());
+  const Matrix3<double> m = *h / (depths < 0.0 ? -scale : scale);
   Matrix3<double> axes;
   axes << m.col(0), m.col(1), m.col(0).cross(m.col(1));
   const Eigen::JacobiSVD<Matrix3<double>> svd(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -73,6 +75,26 @@ std::optional<Pose<double>> plane_pose(const std::vector<Eigen::Vector2d>& plane
   pose.translation = m.col(2);
   if (!pose.rotation.allFinite() || pose.rotation.determinant() < 0.0) return std::nullopt;
   return pose;
+}
+
+Matrix3<double> turn_to_axis(const std::vector<Vector3<double>>& directions) {
+  Vector3<double> mean = Vector3<double>::Zero();
+  for (const Vector3<double>& direction : directions) mean += direction.normalized();
+  return Eigen::Quaterniond::FromTwoVectors(mean, Vector3<double>::UnitZ()).toRotationMatrix();
+}
+
+std::optional<Pose<double>> plane_pose(const std::vector<Eigen::Vector2d>& plane,
+                                       const std::vector<Vector3<double>>& directions) {
+  const Matrix3<double> turn = turn_to_axis(directions);
+  std::vector<Eigen::Vector2d> rays;
+  for (const Vector3<double>& direction : directions) {
+    const Vector3<double> turned = turn * direction;
+    if (!(turned.z() > 0.0)) return std::nullopt;
+    rays.emplace_back(turned.hnormalized());
+  }
+  const auto seen = plane_pose(plane, rays);
+  if (!seen) return std::nullopt;
+  return Pose<double>{turn.transpose() * seen->rotation, turn.transpose() * seen->translation};
 }
 
 std::optional<Pose<double>> rigid_fit(const std::vector<Vector3<double>>& in_a,

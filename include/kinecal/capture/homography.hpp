@@ -32,6 +32,15 @@ namespace kinecal {
 [[nodiscard]] std::optional<Pose<double>> plane_pose(const std::vector<Eigen::Vector2d>& plane,
                                                      const std::vector<Eigen::Vector2d>& rays);
 
+/// The same from directions in the optical frame, also of a lens that sees all around.
+/// @param directions  (3) each, of any length, within a half space around their mean
+[[nodiscard]] std::optional<Pose<double>> plane_pose(
+    const std::vector<Eigen::Vector2d>& plane, const std::vector<Vector3<double>>& directions);
+
+/// (3 x 3) R that turns directions so that their mean is the optical axis.
+/// @param directions  (3) each, of any length
+[[nodiscard]] Matrix3<double> turn_to_axis(const std::vector<Vector3<double>>& directions);
+
 /// a_T_b that maps points of b onto those of a, by least squares.
 /// @param in_a, in_b  (3) each, metres; at least three, in the same order
 /// @returns           nullopt if they are on one line

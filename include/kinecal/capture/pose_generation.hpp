@@ -17,7 +17,7 @@
 
 #include "kinecal/capture/robot_interface.hpp"
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/sensors/pinhole_camera.hpp"
+#include "kinecal/sensors/lens_camera.hpp"
 
 namespace kinecal {
 

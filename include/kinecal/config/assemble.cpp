@@ -149,7 +149,7 @@ bool add_models(AnyProblem& problem, const StepConfig& step, std::span<const Sam
   const std::size_t before = diagnostics.errors.size();
   for (const ModelConfig& model : step.models) {
     try {
-      sensor_entry(model).add(problem, mount_from(model), model.image);
+      sensor_entry(model).add(problem, mount_from(model), options_of(model));
     } catch (const std::exception& e) {
       diagnostics.error(model.place, fmt::format("model '{}': {}", model.name, e.what()));
     }

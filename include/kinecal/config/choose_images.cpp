@@ -14,6 +14,7 @@
 #include "kinecal/config/doubts/some_samples.ipp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/image_fits.ipp"
+#include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/config/registry.hpp"
 
 namespace kinecal {
@@ -43,13 +44,15 @@ struct ImageOptions {
   }
 }
 
-[[nodiscard]] ImageOptions image_options(std::span<const Sample> samples, const std::string& camera,
+[[nodiscard]] ImageOptions image_options(std::span<const Sample> samples, const ModelConfig& camera,
                                          const SensorEntry& entry) {
-  const std::shared_ptr<const AnySensor> as_raw = entry.make(ImageKind::raw),
-                                         as_rectified = entry.make(ImageKind::rectified);
+  const std::shared_ptr<const AnySensor> as_raw =
+                                             entry.make({ImageKind::raw, options_of(camera).lens}),
+                                         as_rectified = entry.make(
+                                             {ImageKind::rectified, options_of(camera).lens});
   ImageOptions options;
   for (const Sample& sample : samples) {
-    const Observation* seen = sample.observation(camera);
+    const Observation* seen = sample.observation(camera.name);
     if (seen == nullptr || !seen->camera) continue;
     options.seen = true;
     const CameraInfo& info = *seen->camera;
@@ -145,9 +148,18 @@ void choose_images(Config& config, const Robot& robot, std::span<const Sample> s
       }
     }
     const detail::ImageOptions options =
-        detail::image_options(samples, camera.name, *registry().sensor(camera.type));
+        detail::image_options(samples, camera, *registry().sensor(camera.type));
+    const std::string coefficient = detail::free_coefficient(config, camera);
+    if (given == ImageKind::rectified && !coefficient.empty()) {
+      diagnostics.error(camera.place,
+                        fmt::format("sensor '{}': '{}' is free, but its images are rectified and "
+                                    "have no distortion; write 'image: raw', or hold it",
+                                    camera.name, coefficient));
+    }
     if (given != ImageKind::automatic) {
       detail::set_image(config, camera.name, given);
+    } else if (!coefficient.empty()) {
+      detail::set_image(config, camera.name, ImageKind::raw);
     } else if (options.seen) {
       detail::choose_image(config, robot, samples, camera, options, diagnostics);
     }

@@ -10,14 +10,18 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/parameters/parameter.hpp"
-#include "kinecal/sensors/pinhole_camera.hpp"
+#include "kinecal/sensors/camera_image.hpp"
 
 namespace kinecal {
+
+/// `lens: auto`  the simplest lens with which the samples agree.
+inline constexpr std::string_view kAnyLens = "auto";
 
 /// `models:`  a sensor or arm that observes features, and the link it is fixed to.
 struct ModelConfig {
@@ -27,6 +31,8 @@ struct ModelConfig {
   std::string param_name;  ///< prefix of the camera's parameters; the model's name by default
   SourceLocation place;    ///< where the file defines it
   ImageKind image = ImageKind::automatic;  ///< (kinecal only) of a camera2d: the kind of its image
+  /// (kinecal only) of a camera2d: its lens by lens_names(), "auto", or empty: as camera_info says
+  std::string lens = {};
 };
 
 /// `free_params:`  a joint offset or a camera parameter.

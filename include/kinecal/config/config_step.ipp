@@ -68,6 +68,25 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   return ImageKind::automatic;
 }
 
+/// `lens: equidistant`, or another of lens_names(), or auto.
+[[nodiscard]] inline std::string read_lens(ConfigMap& map, const ModelConfig& model) {
+  const auto lens = map.text("lens");
+  if (!lens) return {};
+  const SourceLocation place = map.find("lens")->place;
+  const SensorEntry* entry = registry().sensor(model.type);
+  if (entry != nullptr && !entry->has_lens) {
+    map.error(place, "lens is a key of camera2d, but the type is '" + model.type + "'");
+  }
+  const std::string known(*lens == kAnyLens ? kAnyLens : lens_named(*lens));
+  if (known.empty()) {
+    std::vector<std::string> names(lens_names().begin(), lens_names().end());
+    names.emplace_back(kAnyLens);
+    map.error(place, fmt::format("lens '{}' is none of {}{}", *lens, fmt::join(names, ", "),
+                                 did_you_mean(*lens, names)));
+  }
+  return known;
+}
+
 /// Names of the types of models.
 [[nodiscard]] inline std::vector<std::string> model_types() {
   std::vector<std::string> types;
@@ -78,7 +97,7 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
 
 /// @return  the model; its type is empty if it is unknown
 [[nodiscard]] inline ModelConfig read_model(ConfigItem& item) {
-  ModelConfig model{item.name, "", "", item.name, item.place, ImageKind::automatic};
+  ModelConfig model{item.name, "", "", item.name, item.place, ImageKind::automatic, {}};
   if (!item.map) return model;
   ConfigMap& map = *item.map;
   const std::vector<std::string> types = model_types();
@@ -92,6 +111,7 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   model.frame = map.required_text("frame").value_or("");
   model.param_name = map.text("param_name").value_or(item.name);
   model.image = read_image(map, model);
+  model.lens = read_lens(map, model);
   map.ignore({"topic", "camera_info_topic"});  // used for recording samples
   map.report_unknown();
   return model;

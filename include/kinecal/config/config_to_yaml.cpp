@@ -48,6 +48,7 @@ using Comments = std::map<std::string, std::string>;
     if (model.image != ImageKind::automatic) {
       text += model.image == ImageKind::raw ? "   image: raw\n" : "   image: rectified\n";
     }
+    if (!model.lens.empty()) text += "   lens: " + model.lens + "\n";
   }
   return text;
 }

@@ -22,6 +22,27 @@ const SensorEntry& sensor_entry(const ModelConfig& model) {
                        [](const SensorEntry& one) { return measures_depth(*one.sensor); });
 }
 
+std::shared_ptr<const AnySensor> sensor_of(const ModelConfig& model) {
+  return sensor_entry(model).make(options_of(model));
+}
+
+std::string free_coefficient(const Config& config, const ModelConfig& camera) {
+  const std::shared_ptr<const AnySensor> sensor = sensor_of(camera);
+  const std::span<const ParameterInfo> all = sensor->parameters();
+  for (const StepConfig& step : config.steps) {
+    for (const FreeParamConfig& free : step.free_params) {
+      for (std::size_t i = kIntrinsics; i < all.size(); ++i) {
+        if (free.name == parameter_name(camera.param_name, all[i].name)) return free.name;
+      }
+    }
+  }
+  return {};
+}
+
+SensorOptions options_of(const ModelConfig& model) {
+  return {model.image, model.lens == kAnyLens ? "" : model.lens};
+}
+
 Mount mount_from(const ModelConfig& model) {
   return {model.name, model.frame, model.param_name};
 }
@@ -138,7 +159,8 @@ std::string lag_name(const ModelConfig& model) {
     for (std::string& name : joint_model_names(robot, joint)) names.push_back(std::move(name));
   }
   for (const ModelConfig& model : step.models) {
-    for (const ParameterInfo& info : sensor_entry(model).sensor->parameters()) {
+    const std::shared_ptr<const AnySensor> sensor = sensor_of(model);
+    for (const ParameterInfo& info : sensor->parameters()) {
       names.push_back(parameter_name(mount_from(model).parameter_prefix(), info.name));
     }
     names.push_back(lag_name(model));
@@ -224,7 +246,8 @@ inline void check_collisions(const ParameterTable& table, const Robot& robot, co
       }
     }
     for (const ModelConfig& model : step.models) {
-      for (const ParameterInfo& info : sensor_entry(model).sensor->parameters()) {
+      const std::shared_ptr<const AnySensor> sensor = sensor_of(model);
+      for (const ParameterInfo& info : sensor->parameters()) {
         check(parameter_name(mount_from(model).parameter_prefix(), info.name), model.place,
               "model '" + model.name + "'");
       }
@@ -252,7 +275,7 @@ ParameterTable parameters_from(const Config& config, const Robot& robot,
   const std::set<std::string> recorded = feature_frames(samples);
   for (const StepConfig& step : config.steps) {
     for (const ModelConfig& model : step.models) {
-      add_sensor_parameters(table, *sensor_entry(model).sensor, mount_from(model), samples);
+      add_sensor_parameters(table, *sensor_of(model), mount_from(model), samples);
     }
     for (const BlockConfig& block : step.error_blocks) {
       add_parameters(table, block.name, own_parameters(block));

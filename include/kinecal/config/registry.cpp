@@ -13,13 +13,25 @@ namespace {
 using Keys = std::vector<std::vector<std::string>>;
 using NumberKeys = std::vector<std::pair<std::string, double>>;
 
-/// The entries of all built-in sensors, in the order of the variant.
-template <Sensor... Ms>
-[[nodiscard]] std::vector<SensorEntry> built_in_sensors(const std::variant<Ms...>*) {
-  const auto add = [](AnyProblem& problem, const BuiltInSensor& sensor, const Mount& mount) {
-    problem.add_built_in(sensor, mount);
+/// The entry of a built-in sensor.
+template <Sensor M>
+[[nodiscard]] SensorEntry built_in_sensor() {
+  return sensor_entry_of(M{}, [](AnyProblem& problem, const BuiltInSensor& sensor,
+                                 const Mount& mount) { problem.add_built_in(sensor, mount); });
+}
+
+/// The entry of the cameras with all lenses.
+[[nodiscard]] SensorEntry camera_entry() {
+  SensorEntry entry = built_in_sensor<LensCamera<PlumbBob>>();
+  const auto with = [](const SensorOptions& options) {
+    return lens_camera(options.lens.empty() ? PlumbBob::kName : options.lens, options.image);
   };
-  return {sensor_entry_of(Ms{}, add)...};
+  entry.has_lens = true;
+  entry.make = [with](const SensorOptions& options) { return any_built_in(with(options)); };
+  entry.add = [with](AnyProblem& problem, const Mount& mount, const SensorOptions& options) {
+    problem.add_built_in(with(options), mount);
+  };
+  return entry;
 }
 
 /// @param make  makes the block from the numbers of a configuration
@@ -74,7 +86,8 @@ template <ErrorBlock B, class Make>
 
 Registry::Registry() {
   using detail::built_in_block;
-  sensors_ = detail::built_in_sensors(static_cast<const BuiltInSensor*>(nullptr));
+  sensors_ = {detail::built_in_sensor<ChainPoint>(), detail::built_in_sensor<DepthCamera>(),
+              detail::camera_entry(), detail::built_in_sensor<ChainPose>()};
 
   const auto number = [](const BlockConfig& block, const char* key) {
     return block.numbers.at(key);

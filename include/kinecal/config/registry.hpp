@@ -22,15 +22,22 @@
 
 namespace kinecal {
 
+/// What a model says of a camera beside its type.
+struct SensorOptions {
+  ImageKind image = ImageKind::automatic;  ///< `image:`
+  std::string lens = {};                   ///< `lens:`; empty: plumb_bob
+};
+
 /// A type of sensor in configurations.
 struct SensorEntry {
   std::string type;                         ///< `type:` of a model
   std::shared_ptr<const AnySensor> sensor;  ///< what is known of it
   bool has_image = false;                   ///< `image:` says what its pixels are of
-  /// A sensor of this type, with an image.
-  std::function<std::shared_ptr<const AnySensor>(ImageKind)> make;
+  bool has_lens = false;                    ///< `lens:` says which lens it has
+  /// A sensor of this type.
+  std::function<std::shared_ptr<const AnySensor>(const SensorOptions&)> make;
   /// Adds a sensor of this type to a problem.
-  std::function<void(AnyProblem&, const Mount&, ImageKind)> add;
+  std::function<void(AnyProblem&, const Mount&, const SensorOptions&)> add;
 };
 
 namespace detail {
@@ -49,10 +56,13 @@ template <Sensor M, class Add>
     if constexpr (kHasImage<M>) made.image = image;
     return made;
   };
-  return {std::string(M::kType), behind_interface(model), kHasImage<M>,
-          [with](ImageKind image) { return behind_interface(with(image)); },
-          [with, add](AnyProblem& problem, const Mount& mount, ImageKind image) {
-            add(problem, with(image), mount);
+  return {std::string(M::kType),
+          behind_interface(model),
+          kHasImage<M>,
+          false,
+          [with](const SensorOptions& options) { return behind_interface(with(options.image)); },
+          [with, add](AnyProblem& problem, const Mount& mount, const SensorOptions& options) {
+            add(problem, with(options.image), mount);
           }};
 }
 

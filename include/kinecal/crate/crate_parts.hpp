@@ -13,7 +13,7 @@
 #include "kinecal/problem/term.hpp"
 #include "kinecal/sensors/chain_point.hpp"
 #include "kinecal/sensors/depth_camera.hpp"
-#include "kinecal/sensors/pinhole_camera.hpp"
+#include "kinecal/sensors/lens_camera.hpp"
 
 namespace kinecal {
 
@@ -38,9 +38,10 @@ struct Chain6d : SensorOn<Name, C, ChainPose> {};
 /// A depth camera; its optical frame is the chain's tip.
 template <FixedString Name, StaticChain C>
 struct Camera3d : SensorOn<Name, C, DepthCamera> {};
-/// A pinhole camera; its optical frame is the chain's tip.
-template <FixedString Name, StaticChain C>
-struct Camera2d : SensorOn<Name, C, PinholeCamera> {};
+/// A camera; its optical frame is the chain's tip.
+/// @tparam L  its lens: PlumbBob, Equidistant, ...; RationalPolynomial contains PlumbBob
+template <FixedString Name, StaticChain C, LensModel L = RationalPolynomial>
+struct Camera2d : SensorOn<Name, C, LensCamera<L>> {};
 
 /// An error block between sensors, with a name, a sigma and a loss.  Both can be set later:
 ///

@@ -2,7 +2,7 @@
 //
 //   r = predicted - observed
 //
-// Source: Fetch paper, III-B.  sensors/pinhole_camera.hpp has the projection.
+// Source: Fetch paper, III-B.  sensors/lens_camera.hpp has the projection.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -8,12 +8,19 @@
 #include "kinecal/sensors/any_sensor.hpp"
 #include "kinecal/sensors/chain_point.hpp"
 #include "kinecal/sensors/depth_camera.hpp"
-#include "kinecal/sensors/pinhole_camera.hpp"
+#include "kinecal/sensors/lens_camera.hpp"
 
 namespace kinecal {
 
 /// A sensor of a built-in type; configurations name it by its kType.
-using BuiltInSensor = std::variant<ChainPoint, DepthCamera, PinholeCamera, ChainPose>;
+using BuiltInSensor = std::variant<ChainPoint, DepthCamera, LensCamera<PlumbBob>,
+                                   LensCamera<RationalPolynomial>, LensCamera<ThinPrism>,
+                                   LensCamera<Equidistant>, LensCamera<DoubleSphere>, ChainPose>;
+
+/// A camera by the name of its lens: lens_of() or lens_named().
+/// @throws std::invalid_argument  if there is no such lens
+[[nodiscard]] BuiltInSensor lens_camera(std::string_view lens,
+                                        ImageKind image = ImageKind::automatic);
 
 /// A built-in sensor behind the common interface.
 [[nodiscard]] std::shared_ptr<const AnySensor> any_built_in(const BuiltInSensor& sensor);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kinecal/sensors/camera_image.hpp"
+#include "kinecal/sensors/lens_names.hpp"
 #include "kinecal/sensors/sensor.hpp"
 
 namespace kinecal {
@@ -14,7 +15,9 @@ KINECAL_INLINE bool is_raw(const CameraInfo& info, ImageKind image) {
   if (image != ImageKind::automatic) return image == ImageKind::raw;
   const bool has_k = info.k[0] != 0.0 || info.k[4] != 0.0;
   const bool has_p = info.p[0] != 0.0 || info.p[5] != 0.0;
-  const bool bends = std::any_of(info.d.begin(), info.d.end(), [](double d) { return d != 0.0; });
+  const std::string_view lens = lens_named(info.distortion_model);
+  const bool bends = lens == "equidistant" || lens == "double_sphere" ||
+                     std::any_of(info.d.begin(), info.d.end(), [](double d) { return d != 0.0; });
   return has_k && (bends || !has_p);
 }
 

@@ -18,6 +18,9 @@
 //   kSettings, settings(observation)     numbers that come with each observation: intrinsics
 //   initial(settings)                    values of its parameters before the first step
 //   measurement(point, settings)         the part of a recorded point to keep, computed once
+//   kUsuallyFree, with_held(s, v)        the first parameters, and settings that contain the values of the others: then
+//                                        place() and predict() also take the first ones alone, and the others,
+//                                        while they are held, cost nothing
 //   kOwnFrame                            features are in the sensor's frame, never in a virtual one
 //   kOriented                            features have an orientation
 //   predict(p, settings, parameters)     the pixel of a point in its frame: (2) pixels; not a number
@@ -73,6 +76,11 @@ template <class M>
   return 0;
 }
 template <class M>
+[[nodiscard]] consteval std::size_t count_usually_free() {
+  if constexpr (requires { M::kUsuallyFree; }) return M::kUsuallyFree;
+  return count_parameters<M>();
+}
+template <class M>
 [[nodiscard]] consteval std::size_t count_settings() {
   if constexpr (requires { M::kSettings; }) return M::kSettings;
   return 0;
@@ -96,6 +104,9 @@ inline constexpr std::size_t kParametersOf = detail::count_parameters<M>();
 /// Number of settings that come with each observation, M::kSettings: a camera's intrinsics.
 template <class M>
 inline constexpr std::size_t kSettingsOf = detail::count_settings<M>();
+/// Number of its first parameters that are usually free, M::kUsuallyFree: all of them without it.
+template <class M>
+inline constexpr std::size_t kUsuallyFreeOf = detail::count_usually_free<M>();
 /// True if features are in the sensor's own frame, never in a virtual one: M::kOwnFrame.
 template <class M>
 inline constexpr bool kIsInOwnFrame = detail::is_in_own_frame<M>();

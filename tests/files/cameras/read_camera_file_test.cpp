@@ -202,11 +202,63 @@ TEST_F(CameraFile, ACameraMustBeChosenIfThereAreSeveral) {
   EXPECT_EQ(read(text.substr(0, text.find("cam1:"))).k, kMatrix);
 }
 
+TEST_F(CameraFile, ReadsKalibrsFisheyes) {
+  CameraInfo camera = read(replaced(kKalibr, "radtan", "equidistant"), "cam0");
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_EQ(camera.distortion_model, "equidistant");
+  EXPECT_THAT(camera.d, ElementsAre(-0.29, 0.075, 0.0002, -0.0001));
+  EXPECT_EQ(camera.k, kMatrix);
+  camera = read(replaced(replaced(replaced(replaced(kKalibr, "model: pinhole", "model: ds"),
+                                           "radtan", "none"),
+                                  "[-0.29, 0.075, 0.0002, -0.0001]", "[]"),
+                         "[550.5,", "[-0.2, 0.6, 550.5,"),
+                "cam0");
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_EQ(camera.distortion_model, "double_sphere");
+  EXPECT_THAT(camera.d, ElementsAre(-0.2, 0.6));
+  EXPECT_EQ(camera.k, kMatrix);
+}
+
+TEST_F(CameraFile, WhatIsWrittenForKalibrAndOpencvIsReadBack) {
+  CameraInfo camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.k = kMatrix;
+  const auto check = [&](const std::string& text, const std::string& which) {
+    const CameraInfo again = read(text, which);
+    EXPECT_THAT(diagnostics_.errors, IsEmpty()) << text;
+    EXPECT_EQ(again.distortion_model, camera.distortion_model) << text;
+    EXPECT_EQ(again.d, camera.d) << text;
+    EXPECT_EQ(again.k, camera.k) << text;
+    EXPECT_EQ(again.width, 640) << text;
+  };
+  for (const auto& [model, d] :
+       std::map<std::string, std::vector<double>>{{"plumb_bob", {0.1, -0.2, 1.0 / 3.0, 0.02, 0.0}},
+                                                  {"equidistant", {0.1, -0.2, 1.0 / 3.0, 0.02}},
+                                                  {"double_sphere", {-0.2, 1.0 / 3.0}}}) {
+    camera.distortion_model = model;
+    camera.d = d;
+    check(to_kalibr_yaml(camera, "cam0"), "");
+    if (model == "double_sphere") {
+      EXPECT_THROW((void)to_opencv_yaml(camera), std::invalid_argument);
+    } else {
+      check(to_opencv_yaml(camera), "");
+    }
+  }
+  camera.distortion_model = "rational_polynomial";
+  camera.d = {0.1, -0.2, 0.001, 1.0 / 3.0, 0.0, 1, 2, 3};
+  check(to_opencv_yaml(camera), "");
+  EXPECT_THROW((void)to_kalibr_yaml(camera, "cam0"), std::invalid_argument) << "eight coefficients";
+  camera.d.resize(14, 0.0);
+  check(to_opencv_yaml(camera), "");
+}
+
 TEST_F(CameraFile, RefusesKalibrsOtherModelsByName) {
   EXPECT_EQ(refusal(replaced(kKalibr, "model: pinhole", "model: omni"), "cam0"),
-            "c.yaml:3: cam0: camera_model 'omni' is not supported; it must be pinhole");
-  EXPECT_EQ(refusal(replaced(kKalibr, "radtan", "equidistant"), "cam0"),
-            "c.yaml:5: cam0: distortion_model 'equidistant' is not supported; it must be radtan");
+            "c.yaml:3: cam0: camera_model 'omni' is not supported; it must be pinhole or ds");
+  EXPECT_EQ(refusal(replaced(kKalibr, "radtan", "fov"), "cam0"),
+            "c.yaml:5: cam0: distortion_model 'fov' is not supported; it must be radtan or "
+            "equidistant or none");
   EXPECT_EQ(refusal(replaced(kKalibr, "550.5, 551.5", "550.5"), "cam0"),
             "c.yaml:6: cam0: intrinsics has 3 numbers, not 4");
   EXPECT_THAT(refusal(replaced(kKalibr, "resolution: [640, 480]", "res: []"), "cam0"),
@@ -294,12 +346,12 @@ TEST_F(CameraFile, ACameraInfoWithItsDistortionUnderAnotherKeyIsRefused) {
 }
 
 TEST_F(CameraFile, RefusesWhatOpencvHasAndCameraInfoHasNot) {
-  EXPECT_THAT(refusal(replaced(replaced(kOpencv, ", 0.01 ]", " , 0.01, 0, 0, 0, 0, 0, 0, 0 ]"),
-                               "rows: 5", "rows: 12")),
-              HasSubstr("c.yaml:13: distortion_coefficients has 12 numbers; distortion models of "
-                        "camera_info have 4, 5 or 8"));
+  EXPECT_THAT(
+      refusal(replaced(replaced(kOpencv, ", 0.01 ]", " , 0.01, 0 ]"), "rows: 5", "rows: 6")),
+      HasSubstr("c.yaml:13: distortion_coefficients has 6 numbers; OpenCV has 4, 5, 8, 12 "
+                "or 14"));
   EXPECT_THAT(refusal(replaced(kOpencv, "flags: 0", "fisheye_model: 1")),
-              HasSubstr("c.yaml:6: fisheye_model"));
+              HasSubstr("c.yaml:13: distortion_coefficients has 5 numbers; a fisheye_model has 4"));
   EXPECT_THAT(refusal(replaced(kOpencv, "rows: 5", "rows: 4")),
               HasSubstr("distortion_coefficients has 5 numbers, not '4' x '1'"));
 }

@@ -14,6 +14,7 @@
 
 #include "kinecal/config/doubts/occurrences.hpp"
 #include "kinecal/config/doubts/sensor_points.hpp"
+#include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/files/diagnostics.hpp"
 
@@ -79,8 +80,8 @@ inline void check_depth_points(const RecordedPoints& recorded, std::span<const S
   for (std::size_t i = 0; i < recorded.points.size(); ++i) {
     const std::size_t s = recorded.samples[i];
     const Observation& seen = *samples[s].observation(recorded.model.name);
-    const AnySensor& sensor = *registry().sensor(recorded.model.type)->sensor;
-    pixels.push_back(sensor.measurement(recorded.points[i], sensor.settings(seen)));
+    const std::shared_ptr<const AnySensor> sensor = sensor_of(recorded.model);
+    pixels.push_back(sensor->measurement(recorded.points[i], sensor->settings(seen)));
     if (pixels.back().z() > 0.0) continue;
     diagnostics.error(
         place_of(samples, s),

@@ -81,22 +81,10 @@ class SensorCodeOf final : public SensorCode<S> {
         *values++ = corrected.place(point(seen, i), chosen, changes);
       }
     } else if constexpr (PlacingSensor<M>) {
-      for (std::size_t i = 0; i < seen.size(); ++i, values += Vectors::kValues) {
-        const Measurement<M, S> m = measurement(seen, i);
-        const Pose<S>& pose = poses[seen.chain(i)];
-        if (kOwn == 0 || chosen.empty()) {
-          Vectors::to_base(pose, model_.place(m, own_constants<kOwn, S>(own)), values);
-          continue;
-        }
-        if constexpr (kOwn > 0) {
-          using J = Jet<S, static_cast<int>(kOwn)>;
-          const auto placed = model_.place(m, own_jets<kOwn, J, S>(own, 0));
-          Vectors::to_base(pose, placed, values);
-          for (const int k : chosen) {
-            Vectors::change(pose, placed, k, changes);
-            changes += Vectors::kVariables.size();
-          }
-        }
+      if (others_are_held(chosen)) {
+        place_by<kUsual>(seen, poses, own, chosen, values, changes);
+      } else {
+        place_by<kOwn>(seen, poses, own, chosen, values, changes);
       }
     }
   }
@@ -105,40 +93,83 @@ class SensorCodeOf final : public SensorCode<S> {
                std::span<const int> chosen, bool derivatives,
                PredictedPixel<S>& out) const override {
     if constexpr (PredictingSensor<M>) {
-      if (!derivatives) {
-        out.value = model_.predict(p, settings(seen), own_constants<kOwn, S>(own));
-        out.unseen = unseen(p, out.value);
-        return;
-      }
-      using J = Jet<S, 3 + static_cast<int>(kOwn)>;
-      const auto pixel =
-          model_.predict(point_jets<J>(p, 0), settings(seen), own_jets<kOwn, J, S>(own, 3));
-      out.value = values_of(pixel);
-      out.unseen = unseen(p, out.value);
-      out.by_point = derivatives_by<3>(pixel, 0);
-      out.by_own.resize(chosen.size());
-      for (std::size_t k = 0; k < chosen.size(); ++k) {
-        out.by_own[k] = {pixel(0).v(3 + chosen[k]), pixel(1).v(3 + chosen[k])};
+      if (others_are_held(chosen)) {
+        predict_by<kUsual>(seen, p, own, chosen, derivatives, out);
+      } else {
+        predict_by<kOwn>(seen, p, own, chosen, derivatives, out);
       }
     }
   }
 
  private:
-  static constexpr std::size_t kOwn = kParametersOf<M>;
+  static constexpr std::size_t kOwn = kParametersOf<M>, kUsual = kUsuallyFreeOf<M>;
   static constexpr bool kGivesDerivatives = requires { typename M::template Corrected<S>; };
   using Vectors = VectorsOf<placed_quantity<M>().value_or(Quantity::point)>;
 
+  /// True if only the usual parameters are free.
+  [[nodiscard]] static bool others_are_held(std::span<const int> chosen) {
+    return kUsual == kOwn || chosen.empty() || chosen.back() < static_cast<int>(kUsual);
+  }
+  /// place() by the first N parameters.
+  template <std::size_t N>
+  void place_by(BatchObservation<S> seen, std::span<const Pose<S>> poses,
+                std::span<const double> own, std::span<const int> chosen, Vector3<S>* values,
+                Vector3<S>* changes) const {
+    for (std::size_t i = 0; i < seen.size(); ++i, values += Vectors::kValues) {
+      const Measurement<M, S> m = measurement<N>(seen, i, own);
+      const Pose<S>& pose = poses[seen.chain(i)];
+      if (N == 0 || chosen.empty()) {
+        Vectors::to_base(pose, model_.place(m, own_constants<N, S>(own)), values);
+        continue;
+      }
+      if constexpr (N > 0) {
+        using J = Jet<S, static_cast<int>(N)>;
+        const auto placed = model_.place(m, own_jets<N, J, S>(own, 0));
+        Vectors::to_base(pose, placed, values);
+        for (const int k : chosen) {
+          Vectors::change(pose, placed, k, changes);
+          changes += Vectors::kVariables.size();
+        }
+      }
+    }
+  }
+  /// predict() by the first N parameters.
+  template <std::size_t N>
+  void predict_by(BatchObservation<S> seen, const Vector3<S>& p, std::span<const double> own,
+                  std::span<const int> chosen, bool derivatives, PredictedPixel<S>& out) const {
+    if (!derivatives) {
+      out.value = model_.predict(p, settings<N>(seen, own), own_constants<N, S>(own));
+      out.unseen = unseen(p, out.value);
+      return;
+    }
+    using J = Jet<S, 3 + static_cast<int>(N)>;
+    const auto pixel =
+        model_.predict(point_jets<J>(p, 0), settings<N>(seen, own), own_jets<N, J, S>(own, 3));
+    out.value = values_of(pixel);
+    out.unseen = unseen(p, out.value);
+    out.by_point = derivatives_by<3>(pixel, 0);
+    out.by_own.resize(chosen.size());
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      out.by_own[k] = {pixel(0).v(3 + chosen[k]), pixel(1).v(3 + chosen[k])};
+    }
+  }
   [[nodiscard]] static Vector3<S> point(BatchObservation<S> seen, std::size_t i) {
     const S* m = seen.measured(i);
     return {m[0], m[1], m[2]};
   }
-  [[nodiscard]] static std::array<S, kSettingsOf<M>> settings(BatchObservation<S> seen) {
+  /// Settings; if N parameters are evaluated, with the values of the others.
+  template <std::size_t N = kOwn>
+  [[nodiscard]] static std::array<S, kSettingsOf<M>> settings(
+      BatchObservation<S> seen, [[maybe_unused]] std::span<const double> own = {}) {
     std::array<S, kSettingsOf<M>> all;
     std::copy_n(seen.settings(), kSettingsOf<M>, all.begin());
+    if constexpr (N < kOwn) return M::with_held(all, own);
     return all;
   }
-  [[nodiscard]] static Measurement<M, S> measurement(BatchObservation<S> seen, std::size_t i) {
-    Measurement<M, S> m{.point = point(seen, i), .settings = settings(seen)};
+  template <std::size_t N>
+  [[nodiscard]] static Measurement<M, S> measurement(BatchObservation<S> seen, std::size_t i,
+                                                     std::span<const double> own) {
+    Measurement<M, S> m{.point = point(seen, i), .settings = settings<N>(seen, own)};
     if constexpr (kIsOriented<M>) std::copy_n(seen.measured(i) + 3, 9, m.rotation.data());
     return m;
   }

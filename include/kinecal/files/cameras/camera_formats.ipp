@@ -6,14 +6,16 @@
 //               K D R P (ROS 1) or k d r p (ROS 2).
 //               Source: ROS wiki, camera_calibration_parsers; sensor_msgs/CameraInfo.
 // Kalibr        A map of cameras, cam0, cam1 and so on: camera_model: pinhole,
-//               intrinsics: [fu, fv, pu, pv], distortion_model: radtan,
-//               distortion_coeffs: [k1, k2, p1, p2], resolution: [width, height].
-//               radtan is plumb_bob with k3 = 0; ROS pinhole cameras do not have the other models.
+//               intrinsics: [fu, fv, pu, pv], distortion_model: radtan, equidistant or none,
+//               distortion_coeffs: [k1, k2, p1, p2] or [k1, k2, k3, k4], resolution: [width, height].
+//               radtan is plumb_bob with k3 = 0.  Or camera_model: ds, the double sphere, with
+//               intrinsics: [xi, alpha, fu, fv, pu, pv] and no distortion.
 //               Source: Kalibr wiki, YAML formats and supported models.
 // OpenCV        %YAML:1.0, image_width, image_height, and !!opencv-matrix {rows, cols, dt, data}:
 //               camera_matrix, distortion_coefficients.  Case and underscores of keys vary, and so does
 //               the name of the distortion: see distortion_keys.ipp.  Four coefficients are plumb_bob
-//               with k3 = 0, five plumb_bob, eight rational_polynomial.
+//               with k3 = 0, five plumb_bob, eight, twelve or fourteen rational_polynomial; with
+//               fisheye_model: 1, four are equidistant.
 //               Source: OpenCV documentation, FileStorage; calib3d, distortion coefficients.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -26,6 +28,7 @@
 #include "kinecal/files/cameras/camera_fields.ipp"
 #include "kinecal/files/cameras/distortion_keys.ipp"
 #include "kinecal/files/cameras/image_part.ipp"
+#include "kinecal/sensors/lens_camera.hpp"
 
 namespace kinecal::detail {
 
@@ -110,27 +113,41 @@ inline void doubt_no_distortion(ConfigMap& file, const CameraKeys& known,
   return *numbers;
 }
 
-/// Reports any other than the expected model.
-inline void expect_kalibr_model(ConfigMap& camera, const std::string& key,
-                                const std::string& expected) {
-  const auto model = camera.required_text(key);
-  if (!model || *model == expected) return;
-  camera.error(camera.find(key)->place,
-               key + " '" + *model + "' is not supported; it must be " + expected);
+/// Reports any other than the expected models.
+/// @return  the model
+[[nodiscard]] inline std::string expect_kalibr_model(ConfigMap& camera, const std::string& key,
+                                                     const std::vector<std::string>& expected) {
+  const std::string model = camera.required_text(key).value_or("");
+  if (!model.empty() && std::find(expected.begin(), expected.end(), model) == expected.end()) {
+    camera.error(camera.find(key)->place, fmt::format("{} '{}' is not supported; it must be {}",
+                                                      key, model, fmt::join(expected, " or ")));
+  }
+  return model;
 }
 
 /// Reads one camera of Kalibr's camchain.
 /// @param camera  its map
 [[nodiscard]] inline CameraInfo read_kalibr_camera(ConfigMap& camera) {
   const std::size_t errors = camera.diagnostics().errors.size();
-  expect_kalibr_model(camera, "camera_model", "pinhole");
-  expect_kalibr_model(camera, "distortion_model", "radtan");
+  const bool is_sphere = expect_kalibr_model(camera, "camera_model", {"pinhole", "ds"}) == "ds";
+  const std::string distortion =
+      is_sphere
+          ? expect_kalibr_model(camera, "distortion_model", {"none"})
+          : expect_kalibr_model(camera, "distortion_model", {"radtan", "equidistant", "none"});
   CameraInfo info;
   if (camera.diagnostics().errors.size() > errors) return info;  // numbers of another model
-  const std::vector<double> f = kalibr_numbers(camera, "intrinsics", 4);
+  std::vector<double> f = kalibr_numbers(camera, "intrinsics", is_sphere ? 6 : 4);
+  info.d = kalibr_numbers(camera, "distortion_coeffs", distortion == "none" ? 0 : 4);
   info.distortion_model = "plumb_bob";
-  info.d = kalibr_numbers(camera, "distortion_coeffs", 4);
-  info.d.push_back(0.0);
+  if (is_sphere) {
+    info.distortion_model = DoubleSphere::kName;
+    info.d.assign(f.begin(), f.begin() + 2);
+    f.erase(f.begin(), f.begin() + 2);
+  } else if (distortion == "equidistant") {
+    info.distortion_model = Equidistant::kName;
+  } else {
+    info.d.resize(5, 0.0);
+  }
   info.k = {f[0], 0, f[2], 0, f[1], f[3], 0, 0, 1};
   const std::vector<double> size = kalibr_numbers(camera, "resolution", 2);
   for (const double pixels : size) {

@@ -1,4 +1,4 @@
-// The camera_info file that ROS drivers load.
+// The files of a camera that others load: camera_info of ROS drivers, Kalibr's, OpenCV's.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,5 +18,13 @@ namespace kinecal {
 
 /// The same in the format of a ROS 2 message: sensor_msgs/CameraInfo without its header.
 [[nodiscard]] std::string to_camera_message_yaml(const CameraInfo& camera);
+
+/// A camera of Kalibr's camchain.
+/// @throws std::invalid_argument  if Kalibr has no lens with these coefficients
+[[nodiscard]] std::string to_kalibr_yaml(const CameraInfo& camera, const std::string& camera_name);
+
+/// The file of OpenCV's FileStorage, of the raw image.
+/// @throws std::invalid_argument  if OpenCV has no lens with these coefficients
+[[nodiscard]] std::string to_opencv_yaml(const CameraInfo& camera);
 
 }  // namespace kinecal

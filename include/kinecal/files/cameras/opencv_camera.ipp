@@ -54,12 +54,8 @@ namespace kinecal::detail {
   CameraInfo camera;
   camera.width = read_camera_size(file, keys({"image_width"}));
   camera.height = read_camera_size(file, keys({"image_height"}));
-  if (const ConfigEntry* fisheye = find_camera_key(file, keys({"fisheye_model"}))) {
-    if (file.number(fisheye->key, 0.0) != 0.0) {
-      file.error(fisheye->place,
-                 "fisheye_model: fisheye cameras are not supported, only pinhole cameras");
-    }
-  }
+  const ConfigEntry* fisheye = find_camera_key(file, keys({"fisheye_model"}));
+  const bool is_fisheye = fisheye != nullptr && file.number(fisheye->key, 0.0) != 0.0;
   if (!read_camera_matrix(file, keys({"camera_matrix", "K"}), camera.k)) {
     file.error(file.place(), "camera_matrix is missing");
   }
@@ -72,12 +68,17 @@ namespace kinecal::detail {
                         "distortion_coefficients", true);
   }
   const std::size_t n = camera.d.size();
-  if (n != 0 && n != 4 && n != 5 && n != 8) {
-    file.error(d->place,
-               has_numbers(d->key, n) + "; distortion models of camera_info have 4, 5 or 8");
+  const bool is_known =
+      is_fisheye ? n == 4 : n == 0 || n == 4 || n == 5 || n == 8 || n == 12 || n == 14;
+  if (!is_known) {
+    file.error(d != nullptr ? d->place : file.place(),
+               has_numbers(d != nullptr ? d->key : "distortion_coefficients", n) +
+                   (is_fisheye ? "; a fisheye_model has 4" : "; OpenCV has 4, 5, 8, 12 or 14"));
   }
-  if (n < 5) camera.d.resize(5, 0.0);
-  camera.distortion_model = n == 8 ? "rational_polynomial" : "plumb_bob";
+  if (n < 5 && !is_fisheye) camera.d.resize(5, 0.0);
+  camera.distortion_model = is_fisheye ? "equidistant"
+                            : n >= 8   ? "rational_polynomial"
+                                       : "plumb_bob";
   if (camera.width == 0 || camera.height == 0) {
     refuse_lost_size(file, "image_width and image_height");
   }

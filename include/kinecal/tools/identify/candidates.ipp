@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kinecal/config/config.hpp"
+#include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/robot.hpp"
 
@@ -47,6 +48,20 @@ struct ModelChain {
     if (names.contains(joint.name)) joints.push_back(&joint);
   }
   return joints;
+}
+
+/// The parameters of a sensor that may be wrong: of a camera of rectified images, not those of its lens.
+[[nodiscard]] inline std::vector<std::string> sensor_parameters(const ModelConfig& model) {
+  const SensorEntry* entry = registry().sensor(model.type);
+  if (entry == nullptr) return {};
+  const std::shared_ptr<const AnySensor> sensor = sensor_of(model);
+  const bool has_lens = entry->has_lens && model.image != ImageKind::rectified;
+  std::vector<std::string> names;
+  for (const ParameterInfo& info : sensor->parameters()) {
+    const bool is_of_lens = entry->has_lens && names.size() >= kIntrinsics;
+    if (!is_of_lens || has_lens) names.push_back(parameter_name(model.param_name, info.name));
+  }
+  return names;
 }
 
 [[nodiscard]] inline bool is_free(const StepConfig& step, const std::string& name) {

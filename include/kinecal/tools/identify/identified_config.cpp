@@ -27,11 +27,7 @@ Config with_all_candidates(const Config& config, const Robot& robot,
     for (const std::string& name : of_joint.parameters) free(name);
   }
   for (const ModelConfig& model : step.models) {
-    const SensorEntry* entry = registry().sensor(model.type);
-    if (entry == nullptr) continue;
-    for (const ParameterInfo& info : entry->sensor->parameters()) {
-      free(model.param_name + "_" + std::string(info.name));
-    }
+    for (const std::string& name : detail::sensor_parameters(model)) free(name);
   }
   for (FreeFrameConfig& frame : step.free_frames) frame.place = step.place;
   return all;
@@ -84,10 +80,7 @@ IdentifyTask identify_task(const Config& config, const AnyProblem& problem,
       detail::moving_joints(detail::model_chains(config, robot), robot);
   for (const Joint* joint : joints) add(detail::kZero, joint->name, {joint->name});
   for (const ModelConfig& model : step.models) {
-    const SensorEntry* entry = registry().sensor(model.type);
-    if (entry == nullptr) continue;
-    for (const ParameterInfo& info : entry->sensor->parameters()) {
-      const std::string name = model.param_name + "_" + std::string(info.name);
+    for (const std::string& name : detail::sensor_parameters(model)) {
       add(detail::kOfSensor, name, {name});
     }
   }

@@ -1,0 +1,129 @@
+// Definitions of choose_lenses.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/config/choose_lenses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/config/parameters_from_config.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// The lenses that the camera_info of a camera has, each with the first sample that has it.
+struct RecordedLenses {
+  std::vector<std::pair<std::string, const Sample*>> lenses;
+  bool is_known = true;  ///< false if some lens is not known: choose_images() reports it
+};
+
+[[nodiscard]] RecordedLenses recorded_lenses(const std::vector<Sample>& samples,
+                                             const std::string& camera) {
+  RecordedLenses recorded;
+  std::set<std::string> names;
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(camera);
+    if (seen == nullptr || !seen->camera) continue;
+    try {
+      const std::string lens = lens_of(*seen->camera);
+      if (names.insert(lens).second) recorded.lenses.emplace_back(lens, &sample);
+    } catch (const SettingsError&) {
+      recorded.is_known = false;
+    }
+  }
+  return recorded;
+}
+
+/// Place of a lens among those of which each contains the one before it; -1 for others.
+[[nodiscard]] int place_in_family(const std::string& lens) {
+  constexpr std::array kFamily = {PlumbBob::kName, RationalPolynomial::kName, ThinPrism::kName};
+  const auto found = std::find(kFamily.begin(), kFamily.end(), lens);
+  return found == kFamily.end() ? -1 : static_cast<int>(found - kFamily.begin());
+}
+
+/// True if all of a camera's lenses are contained in a lens.
+[[nodiscard]] bool contains_all(const std::string& lens, const RecordedLenses& recorded) {
+  return std::all_of(recorded.lenses.begin(), recorded.lenses.end(), [&](const auto& of) {
+    const int theirs = place_in_family(of.first), own = place_in_family(lens);
+    return of.first == lens || (theirs >= 0 && theirs <= own);
+  });
+}
+
+/// Replaces the lens of the samples by one without distortion.
+void replace_lens(std::vector<Sample>& samples, const std::string& camera,
+                  const std::string& lens) {
+  for (Sample& sample : samples) {
+    for (Observation& seen : sample.observations) {
+      if (seen.sensor != camera || !seen.camera) continue;
+      seen.camera->distortion_model = lens == ThinPrism::kName ? RationalPolynomial::kName : lens;
+      seen.camera->d.assign(
+          sensor_of({.name = "", .type = "camera2d", .lens = lens})->parameters().size() -
+              kIntrinsics,
+          0.0);
+    }
+  }
+}
+
+void set_lens(Config& config, const std::string& camera, const std::string& lens) {
+  for (StepConfig& step : config.steps) {
+    for (ModelConfig& model : step.models) {
+      const SensorEntry* entry = registry().sensor(model.type);
+      if (model.name == camera && entry != nullptr && entry->has_lens) model.lens = lens;
+    }
+  }
+}
+
+/// The lens of a camera whose lens the configuration does not give.
+void take_recorded_lens(Config& config, const ModelConfig& camera, const RecordedLenses& recorded,
+                        Diagnostics& diagnostics) {
+  if (recorded.lenses.empty() || !recorded.is_known) return;
+  const auto largest = std::max_element(
+      recorded.lenses.begin(), recorded.lenses.end(), [](const auto& a, const auto& b) {
+        return place_in_family(a.first) < place_in_family(b.first);
+      });
+  if (!contains_all(largest->first, recorded)) {
+    const auto &a = recorded.lenses[0], &b = recorded.lenses[1];
+    diagnostics.error(
+        camera.place,
+        fmt::format("sensor '{}' has two lenses: {} at {}, {} at {}; give each camera a name of "
+                    "its own",
+                    camera.name, a.first, a.second->source, b.first, b.second->source));
+    return;
+  }
+  set_lens(config, camera.name, largest->first);
+}
+
+}  // namespace
+}  // namespace detail
+
+void choose_lenses(Config& config, std::vector<Sample>& samples, Diagnostics& diagnostics) {
+  for (const ModelConfig& camera : detail::models_of(config)) {
+    const SensorEntry* entry = registry().sensor(camera.type);
+    if (entry == nullptr || !entry->has_lens || camera.image == ImageKind::rectified) continue;
+    const detail::RecordedLenses recorded = detail::recorded_lenses(samples, camera.name);
+    if (camera.lens.empty()) {
+      detail::take_recorded_lens(config, camera, recorded, diagnostics);
+      continue;
+    }
+    detail::set_lens(config, camera.name, camera.lens);
+    if (camera.lens == kAnyLens || detail::contains_all(camera.lens, recorded)) continue;
+    const std::string& before = recorded.lenses.front().first;
+    const std::string what = fmt::format("sensor '{}': its lens is {}, camera_info says {}",
+                                         camera.name, camera.lens, before);
+    if (detail::free_coefficient(config, camera).empty()) {
+      diagnostics.error(camera.place,
+                        what + "; free the coefficients of this lens, which are not known");
+      continue;
+    }
+    diagnostics.note(camera.place,
+                     what + ", which is not used: the search begins without distortion");
+    detail::replace_lens(samples, camera.name, camera.lens);
+  }
+}
+
+}  // namespace kinecal
