@@ -12,6 +12,7 @@
 #include "kinecal/trust/drift.hpp"
 #include "kinecal/trust/estimated_noise.hpp"
 #include "kinecal/trust/f_distribution.hpp"
+#include "kinecal/trust/folded_lens.hpp"
 #include "kinecal/trust/gradient_variance.hpp"
 #include "kinecal/trust/held_changes.hpp"
 #include "kinecal/trust/held_out.hpp"

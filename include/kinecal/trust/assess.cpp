@@ -132,6 +132,7 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   if (found.change) found.change->by_pose = follows_poses(problem, *found.change, samples);
   found.pattern = residual_pattern(problem, inside, fit, values, samples, poses, effects);
   found.lens = lens_pattern(problem, inside, fit, values, samples, poses);
+  found.folded = folded_lenses(problem, free, values, samples);
   found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
   found.held_out = detail::held_out_of(*evaluator, values, fit, samples, poses, options);
   if (const auto frames = compared_frames(problem, samples)) {

@@ -11,6 +11,7 @@
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/trust/captures.hpp"
 #include "kinecal/trust/common_noise.hpp"
+#include "kinecal/trust/folded_lens.hpp"
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/lens_pattern.hpp"
 #include "kinecal/trust/neighbours.hpp"
@@ -47,6 +48,7 @@ struct Assessment {
   std::optional<RecordingChange> change;   ///< during the recording
   std::optional<ResidualPattern> pattern;  ///< that the model does not contain
   std::optional<LensPattern> lens;         ///< a camera's lens that is not as it was taken
+  std::vector<FoldedLens> folded;          ///< lenses that fold over inside the image
   std::vector<IdleGroup> idle;             ///< whose parameters improve nothing
   std::vector<PriorPull> pulls;            ///< priors that the samples contradict
   std::optional<PoseUncertainty> pose;     ///< of the frames that the first error block compares

@@ -18,16 +18,14 @@ namespace kinecal::detail {
       break;
     case TakenLens::given:
       return "the distortion in camera_info is not that of its lens at this resolution and focus; "
-             "calibrate the lens "
-             "again";
+             "free its coefficients, or calibrate the lens again";
     case TakenLens::rectified:
       return "its images are taken as rectified, but show the distortion of a lens; write 'image: "
              "raw' if they are "
              "raw, or calibrate the lens again";
   }
-  return "its lens is distorted, but camera_info has no distortion; give it (D of camera_info, "
-         "with 'image: raw'), or "
-         "calibrate the lens first";
+  return "its lens is distorted, but camera_info has no distortion; free its coefficients (k1, "
+         "k2, p1, p2), or give them (D of camera_info, with 'image: raw')";
 }
 
 /// "residuals of 'camera' grow with the distance from the center of the image (+3.1 px at 900 px): ..."
@@ -39,6 +37,21 @@ namespace kinecal::detail {
          numbers + ": " + mended_lens(lens.taken) + "; with a k1 " +
          (lens.taken == TakenLens::given ? "that differs by " : "of ") + k1 +
          ", the noise falls to " + reading(1e2 * lens.noise_left, "1") + " %";
+}
+
+/// Lenses that fold over inside the image are no result.
+inline void judge_folds(const Assessment& step, Judgement& judgement) {
+  for (const FoldedLens& fold : step.folded) {
+    char radii[128];
+    (void)std::snprintf(radii, sizeof radii,
+                        "%.0f px from the center; its corners are at %.0f px, the farthest "
+                        "feature at %.0f px",
+                        fold.radius, fold.corner, fold.farthest);
+    judgement.add(Grade::do_not_use,
+                  "the lens of '" + fold.sensor + "' folds over inside the image, " + radii +
+                      "; record features up to the corners, hold its last coefficients, or give "
+                      "it another model ('lens: auto' finds it)");
+  }
 }
 
 /// The share of the noise that a pattern or a change leaves; 1 if there is none.
