@@ -145,6 +145,7 @@ class LogRun {
     Findings findings =
         findings_of(first_.robot, first_.calibration, std::move(judged), first_.samples);
     findings.images = images_of(first_.config);
+    findings.lenses = lenses_of(first_.config);
     return findings;
   }
 

@@ -18,6 +18,14 @@ std::map<std::string, std::string> images_of(const Config& config) {
   return images;
 }
 
+std::map<std::string, std::string> lenses_of(const Config& config) {
+  std::map<std::string, std::string> lenses;
+  for (const ModelConfig& model : detail::models_of(config)) {
+    if (!model.lens.empty() && model.image != ImageKind::rectified) lenses[model.name] = model.lens;
+  }
+  return lenses;
+}
+
 Fit fit(const Input& input, Calibration calibration, const CalibrateOptions& options,
         const Progress& progress, const SolveOptions& solving) {
   ProcedureOptions procedure{.solving = solving,
@@ -41,6 +49,7 @@ Fit fit(const Input& input, Calibration calibration, const CalibrateOptions& opt
   }
   fitted.findings = findings_of(input.robot, fitted.calibration, std::move(judged), fitted.samples);
   fitted.findings.images = images_of(input.config);
+  fitted.findings.lenses = lenses_of(input.config);
   return fitted;
 }
 

@@ -26,5 +26,7 @@ struct Fit {
 
 /// Which images the pixels of each camera are those of: "raw" or "rectified", where it was chosen.
 [[nodiscard]] std::map<std::string, std::string> images_of(const Config& config);
+/// The lens of each camera of raw images, as far as it is known.
+[[nodiscard]] std::map<std::string, std::string> lenses_of(const Config& config);
 
 }  // namespace kinecal::cli

@@ -75,9 +75,9 @@ TEST(FoldedLens, IsNoResult) {
   calibration.steps.push_back({"calibrate", 100, std::move(stand.problem), FreeSet({0, 1}, 2), {}});
   const Judgement judgement = calibrate_and_judge(calibration, stand.samples).judgement;
   EXPECT_EQ(judgement.verdict, Grade::do_not_use);
-  EXPECT_THAT(judgement.reasons,
-              testing::Contains(HasSubstr("the lens of 'camera' folds over inside the image, 218 px "
-                                          "from the center; its corners are at 400 px")));
+  EXPECT_THAT(judgement.reasons, testing::Contains(HasSubstr(
+                                     "the lens of 'camera' folds over inside the image, 218 px "
+                                     "from the center; its corners are at 400 px")));
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ struct Findings : JudgedResult {
   std::string robot = {};                          ///< its name
   std::map<std::string, std::string> images = {};  ///< "raw" or "rectified", where it was chosen,
                                                    ///< by camera
+  std::map<std::string, std::string> lenses = {};  ///< of cameras of raw images: lens_names()
   std::vector<std::string> helps = {};  ///< what would lower the error on held-out poses: sentences
   std::vector<std::string> speeds = {};  ///< how fast is still good, where samples moved: sentences
   ReportedSearch search = {};  ///< that chose the free parameters; without steps: there was none

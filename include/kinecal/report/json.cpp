@@ -159,6 +159,8 @@ std::string json_report(const Findings& findings) {
   };
   detail::Json images = detail::Json::object();
   for (const auto& [sensor, image] : findings.images) images[sensor] = image;
+  detail::Json lenses = detail::Json::object();
+  for (const auto& [sensor, lens] : findings.lenses) lenses[sensor] = lens;
   const auto file = [](const auto& of) {
     return detail::Json{{"role", of.first}, {"name", of.second}};
   };
@@ -186,6 +188,7 @@ std::string json_report(const Findings& findings) {
       {"bad_samples", detail::json_captures(findings, last)},
       {"left_out", json_list(findings.left_out, write)},
       {"images", images},
+      {"lenses", lenses},
       {"covariance", detail::json_covariance(findings)},
       {"poses", detail::json(findings.poses)}};
   return detail::json_lines(report);

@@ -58,7 +58,8 @@ struct SolvedCamera {
   const double w = info.width - 1.0, h = info.height - 1.0;
   for (int i = 0; i <= kPlaces / 4; ++i) {
     const double share = 4.0 * i / kPlaces;
-    places.insert(places.end(), {{share * w, 0.0}, {share * w, h}, {0.0, share * h}, {w, share * h}});
+    places.insert(places.end(),
+                  {{share * w, 0.0}, {share * w, h}, {0.0, share * h}, {w, share * h}});
   }
   return places;
 }

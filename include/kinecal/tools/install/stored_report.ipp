@@ -119,11 +119,13 @@ inline void read_parameters(const JsonValue& report, const std::string& values_f
   }
 }
 
-/// Reads what the images of cameras were taken for.
+/// Reads what the images of cameras were taken for, and their lenses.
 inline void read_images(const JsonValue& report, Config& config) {
   const JsonValue images = report.at("images");
+  const auto lenses = report.find("lenses");  // older reports have none
   for (StepConfig& step : config.steps) {
     for (ModelConfig& model : step.models) {
+      if (lenses && lenses->find(model.name)) model.lens = lenses->text(model.name);
       if (!images.find(model.name)) continue;
       model.image = images.text(model.name) == "raw" ? ImageKind::raw : ImageKind::rectified;
     }
