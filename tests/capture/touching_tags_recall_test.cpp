@@ -135,8 +135,8 @@ TEST(TouchingTagsRecall, LargeBlurredImagesAreSearchedAtReducedSize) {
   Recall recall;
   for (int seed = 0; seed < test::repetitions(6, 1); ++seed) {
     RandomView random = random_view(seed);
-    random.how.blur = 2.5;
-    recall.add(random, 4);
+    random.how.blur = 2.0;
+    recall.add(random, 3);
   }
   recall.check();
 }

@@ -145,6 +145,22 @@ TEST(CaptureConfig, EveryKeyOfTheTagFinderIsRead) {
   EXPECT_EQ(tags.target.quality.max_bleed, 2.0);
 }
 
+TEST(CaptureConfig, MarkersOfArucoAreTagsOfADictionary) {
+  const CaptureFile file(
+      "features:\n  f: {type: ArucoFinder6d, dictionary: DICT_5X5_100, tags: [{id: 7, size: "
+      "0.08}]}\n");
+  EXPECT_THAT(file.diagnostics.errors, IsEmpty());
+  EXPECT_THAT(file.diagnostics.warnings, IsEmpty());
+  const auto& tags = std::get<AprilTagSettings>(file.config.finders.at(0).settings);
+  EXPECT_EQ(tags.family, "DICT_5X5_100");
+  EXPECT_EQ(tags.target.corners, CornerKind::pose);
+  ASSERT_EQ(tags.tags.size(), 1u);
+  EXPECT_EQ(tags.tags[0].id, 7);
+  EXPECT_EQ(tags.tags[0].size, 0.08);
+  const CaptureFile wrong("features:\n  f: {type: ArucoFinder2d, family: tag36h11, size: 0.1}\n");
+  EXPECT_THAT(wrong.diagnostics.warnings, ElementsAre(HasSubstr("unknown key 'family'")));
+}
+
 TEST(CaptureConfig, ADefaultSizeIsNoted) {
   const CaptureFile board("features:\n  f: {type: CheckerboardFinder}\n");
   EXPECT_THAT(board.diagnostics.notes,

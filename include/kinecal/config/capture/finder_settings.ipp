@@ -65,8 +65,8 @@ inline void read_target(ConfigMap& map, TargetSettings& target) {
   return board;
 }
 
-[[nodiscard]] inline AprilTagSettings read_april_tags(ConfigMap& map, CornerKind corners) {
-  AprilTagSettings tags;
+/// The keys that targets of AprilTags and of ArUco's markers share.
+inline void read_tags(ConfigMap& map, CornerKind corners, AprilTagSettings& tags) {
   tags.columns = read_index(map, "columns", 0);
   tags.rows = read_index(map, "rows", 0);
   tags.size = map.positive("size", 0.0);
@@ -75,12 +75,8 @@ inline void read_target(ConfigMap& map, TargetSettings& target) {
   }
   tags.spacing = map.number("spacing", tags.spacing);
   tags.first_id = read_index(map, "first_id", tags.first_id);
-  tags.family = map.text("family").value_or(tags.family);
-  tags.border = map.count("border", tags.border);
   tags.min_tags = map.count("min_tags", tags.min_tags);
-  tags.max_wrong_bits = read_index(map, "max_wrong_bits", tags.max_wrong_bits);
   tags.min_side = map.positive("min_side", tags.min_side);
-  tags.decimate = map.positive("decimate", tags.decimate);
   tags.target.corners = corners;
   read_target(map, tags.target);
   for (const ConfigEntry& element : map.list("tags")) {
@@ -90,6 +86,22 @@ inline void read_target(ConfigMap& map, TargetSettings& target) {
     tags.tags.push_back({id, tag->positive("size", tags.size), read_corner(*tag, "", {0, 0, 0})});
     tag->report_unknown();
   }
+}
+
+[[nodiscard]] inline AprilTagSettings read_april_tags(ConfigMap& map, CornerKind corners) {
+  AprilTagSettings tags;
+  tags.family = map.text("family").value_or(tags.family);
+  tags.border = map.count("border", tags.border);
+  tags.max_wrong_bits = read_index(map, "max_wrong_bits", tags.max_wrong_bits);
+  tags.decimate = map.positive("decimate", tags.decimate);
+  read_tags(map, corners, tags);
+  return tags;
+}
+
+[[nodiscard]] inline AprilTagSettings read_markers(ConfigMap& map, CornerKind corners) {
+  AprilTagSettings tags;
+  tags.family = map.text("dictionary").value_or("DICT_4X4_50");
+  read_tags(map, corners, tags);
   return tags;
 }
 
@@ -145,21 +157,28 @@ inline void read_target(ConfigMap& map, TargetSettings& target) {
   return finder;
 }
 
-/// Reads the settings of each type; upstream's names.
+/// Reads a target whose corners are of a kind.
+template <auto read, CornerKind corners>
+[[nodiscard]] FinderSettings with_corners(ConfigMap& map) {
+  return read(map, corners);
+}
+
+/// Reads the settings of each type; upstream's names.  The corners of a target are points of a cloud, 2d:
+/// pixels, 6d: one pose.
 inline const std::map<std::string, FinderSettings (*)(ConfigMap&)> kFinderTypes = {
     {"LedFinder", [](ConfigMap& map) -> FinderSettings { return read_led_finder(map); }},
-    {"CheckerboardFinder",
-     [](ConfigMap& map) -> FinderSettings { return read_checkerboard(map, CornerKind::points); }},
-    {"CheckerboardFinder2d",
-     [](ConfigMap& map) -> FinderSettings { return read_checkerboard(map, CornerKind::pixels); }},
-    {"AprilTagFinder",
-     [](ConfigMap& map) -> FinderSettings { return read_april_tags(map, CornerKind::points); }},
-    {"AprilTagFinder2d",
-     [](ConfigMap& map) -> FinderSettings { return read_april_tags(map, CornerKind::pixels); }},
-    {"CharucoFinder",
-     [](ConfigMap& map) -> FinderSettings { return read_charuco(map, CornerKind::points); }},
-    {"CharucoFinder2d",
-     [](ConfigMap& map) -> FinderSettings { return read_charuco(map, CornerKind::pixels); }},
+    {"CheckerboardFinder", with_corners<read_checkerboard, CornerKind::points>},
+    {"CheckerboardFinder2d", with_corners<read_checkerboard, CornerKind::pixels>},
+    {"CheckerboardFinder6d", with_corners<read_checkerboard, CornerKind::pose>},
+    {"AprilTagFinder", with_corners<read_april_tags, CornerKind::points>},
+    {"AprilTagFinder2d", with_corners<read_april_tags, CornerKind::pixels>},
+    {"AprilTagFinder6d", with_corners<read_april_tags, CornerKind::pose>},
+    {"ArucoFinder", with_corners<read_markers, CornerKind::points>},
+    {"ArucoFinder2d", with_corners<read_markers, CornerKind::pixels>},
+    {"ArucoFinder6d", with_corners<read_markers, CornerKind::pose>},
+    {"CharucoFinder", with_corners<read_charuco, CornerKind::points>},
+    {"CharucoFinder2d", with_corners<read_charuco, CornerKind::pixels>},
+    {"CharucoFinder6d", with_corners<read_charuco, CornerKind::pose>},
     {"PlaneFinder", [](ConfigMap& map) -> FinderSettings { return read_plane_finder(map); }},
     {"ScanFinder", [](ConfigMap& map) -> FinderSettings { return read_scan_finder(map); }},
     {"RobotFinder", [](ConfigMap& map) -> FinderSettings { return read_robot_finder(map); }},
