@@ -161,6 +161,20 @@ TEST(CaptureConfig, MarkersOfArucoAreTagsOfADictionary) {
   EXPECT_THAT(wrong.diagnostics.warnings, ElementsAre(HasSubstr("unknown key 'family'")));
 }
 
+TEST(CaptureConfig, GridsOfDiscsAreRead) {
+  const CaptureFile file(
+      "features:\n  f: {type: CircleGridFinder2d, points_x: 7, points_y: 5, size: 0.03, pattern: "
+      "symmetric}\n  g: {type: CircleGridFinder, size: 0.02, pattern: round}\n");
+  EXPECT_THAT(file.diagnostics.warnings, IsEmpty());
+  EXPECT_THAT(file.diagnostics.errors, ElementsAre(HasSubstr("pattern")));
+  const auto& grid = std::get<CircleGridSettings>(file.config.finders.at(0).settings);
+  EXPECT_EQ(grid.points_x, 7);
+  EXPECT_EQ(grid.points_y, 5);
+  EXPECT_EQ(grid.size, 0.03);
+  EXPECT_FALSE(grid.asymmetric);
+  EXPECT_EQ(grid.target.corners, CornerKind::pixels);
+}
+
 TEST(CaptureConfig, ADefaultSizeIsNoted) {
   const CaptureFile board("features:\n  f: {type: CheckerboardFinder}\n");
   EXPECT_THAT(board.diagnostics.notes,

@@ -121,6 +121,19 @@ inline void read_tags(ConfigMap& map, CornerKind corners, AprilTagSettings& tags
   return board;
 }
 
+[[nodiscard]] inline CircleGridSettings read_circles(ConfigMap& map, CornerKind corners) {
+  CircleGridSettings grid;
+  grid.points_x = map.count("points_x", grid.points_x);
+  grid.points_y = map.count("points_y", grid.points_y);
+  grid.asymmetric =
+      read_choice(map, "pattern", "asymmetric", {"asymmetric", "symmetric"}) == "asymmetric";
+  grid.size = read_scale(map, "size", grid.size, "distances");
+  grid.target.corners = corners;
+  read_target(map, grid.target);
+  map.ignore({"debug"});
+  return grid;
+}
+
 [[nodiscard]] inline PlaneFinder read_plane_finder(ConfigMap& map) {
   PlaneFinder finder;
   finder.camera_sensor = map.text("camera_sensor_name").value_or(finder.camera_sensor);
@@ -179,6 +192,9 @@ inline const std::map<std::string, FinderSettings (*)(ConfigMap&)> kFinderTypes 
     {"CharucoFinder", with_corners<read_charuco, CornerKind::points>},
     {"CharucoFinder2d", with_corners<read_charuco, CornerKind::pixels>},
     {"CharucoFinder6d", with_corners<read_charuco, CornerKind::pose>},
+    {"CircleGridFinder", with_corners<read_circles, CornerKind::points>},
+    {"CircleGridFinder2d", with_corners<read_circles, CornerKind::pixels>},
+    {"CircleGridFinder6d", with_corners<read_circles, CornerKind::pose>},
     {"PlaneFinder", [](ConfigMap& map) -> FinderSettings { return read_plane_finder(map); }},
     {"ScanFinder", [](ConfigMap& map) -> FinderSettings { return read_scan_finder(map); }},
     {"RobotFinder", [](ConfigMap& map) -> FinderSettings { return read_robot_finder(map); }},
