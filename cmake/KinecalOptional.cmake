@@ -44,6 +44,7 @@ find_package(BZip2 QUIET)
 find_package(SQLite3 QUIET)
 find_package(PNG QUIET)
 find_package(JPEG QUIET)
+find_package(TIFF QUIET)
 pkg_check_modules(liblz4 QUIET IMPORTED_TARGET GLOBAL liblz4)
 pkg_check_modules(libzstd QUIET IMPORTED_TARGET GLOBAL libzstd)
 kinecal_add_optional(io BZip2 TARGETS BZip2::BZip2 DEBIAN libbz2-dev
@@ -58,3 +59,5 @@ kinecal_add_optional(io PNG TARGETS PNG::PNG DEBIAN libpng-dev
   FLAGS -lpng DEFINE KINECAL_HAVE_PNG FOR "PNG images")
 kinecal_add_optional(io JPEG TARGETS JPEG::JPEG DEBIAN libjpeg-dev
   FLAGS -ljpeg DEFINE KINECAL_HAVE_JPEG FOR "JPEG images")
+kinecal_add_optional(io TIFF TARGETS TIFF::TIFF DEBIAN libtiff-dev
+  FLAGS -ltiff DEFINE KINECAL_HAVE_TIFF FOR "TIFF images")
