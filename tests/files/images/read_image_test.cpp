@@ -303,6 +303,10 @@ TEST(ReadImage, ADamagedTiffIsAnErrorWithItsName) {
   large.replace(width, 4, "\x7f\x7f\x7f\x7f");
   EXPECT_NE(error_of([&] { (void)decode_image(large, "a.tif"); }).find("at most 100 megapixels"),
             std::string::npos);
+  large.replace(width, 4, std::string("\0\0\x20\0", 4));  // 2 097 152 x 30 pixels
+  EXPECT_NE(
+      error_of([&] { (void)decode_image(large, "a.tif"); }).find("too few bytes for its pixels"),
+      std::string::npos);
 }
 #else
 TEST(ReadImage, ATiffNamesTheMissingLibrary) {

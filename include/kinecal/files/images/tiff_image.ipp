@@ -27,6 +27,9 @@ namespace kinecal::detail {
 }
 
 #ifdef KINECAL_HAVE_TIFF
+/// No photograph is compressed to less: of a file that claims more pixels, few bytes would take much memory.
+inline constexpr std::uint64_t kMostTiffPixelsOfAByte = 2000;
+
 /// Bytes in memory, as libtiff reads them, and its first complaint.
 struct TiffBytes {
   std::string_view bytes;
@@ -76,9 +79,11 @@ inline int ignore_tiff_warning(TIFF*, void*, const char*, const char*, va_list) 
     return static_cast<TiffBytes*>(handle)->bytes.size();
   };
 #if TIFFLIB_VERSION >= 20221213
-  constexpr tmsize_t kMostMemory = 1'000'000'000;  // bytes
+  constexpr std::uint64_t kMostMemory = 1'000'000'000, kPixel = 8;  // bytes
+  const std::uint64_t memory =
+      std::min(kMostMemory, kPixel * kMostTiffPixelsOfAByte * from.bytes.size());
   TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
-  TIFFOpenOptionsSetMaxSingleMemAlloc(options, kMostMemory);
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options, static_cast<tmsize_t>(memory));
   TIFFOpenOptionsSetErrorHandlerExtR(options, keep_tiff_error, &from);
   TIFFOpenOptionsSetWarningHandlerExtR(options, ignore_tiff_warning, nullptr);
   TIFF* tiff = TIFFClientOpenExt("image", "rm", &from, read_tiff_bytes, write, seek_tiff_bytes,
@@ -117,6 +122,9 @@ struct OpenTiff {
     fail(from.complaint);
   }
   check_image_size(width, height, name);
+  if (std::uint64_t{width} * height > kMostTiffPixelsOfAByte * bytes.size()) {
+    fail("it has too few bytes for its pixels");
+  }
   char why[1024] = {};
   if (TIFFRGBAImageOK(open.tiff, why) == 0) fail(why);
   std::vector<std::uint32_t> colours(std::size_t{width} * height);
