@@ -45,7 +45,8 @@ namespace {
       if ((order & 4) != 0) std::swap(x, y);
       if ((order & 1) != 0) x = s.points_x - 1 - x;
       if ((order & 2) != 0) y = s.points_y - 1 - y;
-      discs.push_back(found[static_cast<std::size_t>(y * s.points_x + x)]);
+      const int place = y * s.points_x + x;
+      discs.push_back(found[static_cast<std::size_t>(place)]);
     }
   }
   return discs;

@@ -12,11 +12,8 @@ namespace kinecal::detail {
 std::vector<double> search_scales(const GrayImage& image) {
   constexpr double kFirstPixels = 1.5e6, kStep = 1.5, kMost = 1.5;
   const double pixels = static_cast<double>(image.width) * image.height;
-  std::vector<double> scales;
-  for (double scale = std::min(1.0, std::sqrt(kFirstPixels / pixels)); scale <= kMost;
-       scale *= kStep) {
-    scales.push_back(scale);
-  }
+  std::vector<double> scales = {std::min(1.0, std::sqrt(kFirstPixels / pixels))};
+  while (scales.back() * kStep <= kMost) scales.push_back(scales.back() * kStep);
   return scales;
 }
 
@@ -30,9 +27,11 @@ namespace {
   for (int v = 0; v < sized.height; ++v) {
     for (int u = 0; u < sized.width; ++u) {
       double sum = 0.0;
-      for (int k = 0; k < side * side; ++k) {
-        const Eigen::Vector2d off((k % side + 0.5) / side - 0.5, (k / side + 0.5) / side - 0.5);
-        sum += brightness_at(image, at_full_size(Eigen::Vector2d(u, v) + off, scale));
+      for (int j = 0; j < side; ++j) {
+        for (int i = 0; i < side; ++i) {
+          const Eigen::Vector2d off((i + 0.5) / side - 0.5, (j + 0.5) / side - 0.5);
+          sum += brightness_at(image, at_full_size(Eigen::Vector2d(u, v) + off, scale));
+        }
       }
       sized(u, v) = static_cast<std::uint8_t>(std::lround(sum / (side * side)));
     }
