@@ -29,14 +29,14 @@ function(kinecal_add_optional user library)
 endfunction()
 
 find_package(apriltag QUIET)
-find_package(OpenCV 4 QUIET COMPONENTS core imgproc calib3d OPTIONAL_COMPONENTS aruco)
+find_package(OpenCV 4 QUIET COMPONENTS core imgproc features2d calib3d OPTIONAL_COMPONENTS aruco)
 kinecal_add_optional(capture apriltag TARGETS apriltag::apriltag DEBIAN libapriltag-dev
   FLAGS -lapriltag DEFINE KINECAL_HAVE_APRILTAG FOR "AprilTags")
 kinecal_add_optional(io apriltag TARGETS apriltag::apriltag DEBIAN libapriltag-dev
   FLAGS -lapriltag DEFINE KINECAL_HAVE_APRILTAG FOR "AprilTags")
-kinecal_add_optional(capture OpenCV TARGETS opencv_core opencv_imgproc opencv_calib3d
-  DEBIAN libopencv-dev FLAGS "-lopencv_calib3d -lopencv_imgproc -lopencv_core"
-  DEFINE KINECAL_HAVE_OPENCV FOR "checkerboards")
+kinecal_add_optional(capture OpenCV TARGETS opencv_core opencv_imgproc opencv_features2d opencv_calib3d
+  DEBIAN libopencv-dev FLAGS "-lopencv_calib3d -lopencv_features2d -lopencv_imgproc -lopencv_core"
+  DEFINE KINECAL_HAVE_OPENCV FOR "checkerboards and grids of discs")
 kinecal_add_optional(capture OpenCV TARGETS opencv_core opencv_imgproc opencv_calib3d opencv_aruco
   DEBIAN libopencv-dev FLAGS -lopencv_aruco DEFINE KINECAL_HAVE_ARUCO FOR "ChArUco boards")
 
@@ -44,6 +44,7 @@ find_package(BZip2 QUIET)
 find_package(SQLite3 QUIET)
 find_package(PNG QUIET)
 find_package(JPEG QUIET)
+find_package(TIFF QUIET)
 pkg_check_modules(liblz4 QUIET IMPORTED_TARGET GLOBAL liblz4)
 pkg_check_modules(libzstd QUIET IMPORTED_TARGET GLOBAL libzstd)
 kinecal_add_optional(io BZip2 TARGETS BZip2::BZip2 DEBIAN libbz2-dev
@@ -58,3 +59,5 @@ kinecal_add_optional(io PNG TARGETS PNG::PNG DEBIAN libpng-dev
   FLAGS -lpng DEFINE KINECAL_HAVE_PNG FOR "PNG images")
 kinecal_add_optional(io JPEG TARGETS JPEG::JPEG DEBIAN libjpeg-dev
   FLAGS -ljpeg DEFINE KINECAL_HAVE_JPEG FOR "JPEG images")
+kinecal_add_optional(io TIFF TARGETS TIFF::TIFF DEBIAN libtiff-dev
+  FLAGS -ltiff DEFINE KINECAL_HAVE_TIFF FOR "TIFF images")

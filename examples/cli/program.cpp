@@ -496,7 +496,7 @@ void add_detect(CLI::App& command, DetectOptions& options) {
       ->required()
       ->type_name("FILE");
   CLI::Option* images =
-      command.add_option("--images", options.images, "folder of PNG or JPEG photographs")
+      command.add_option("--images", options.images, "folder of photographs: PNG, JPEG, BMP, TIFF")
           ->type_name("DIR");
   CLI::Option* poses =
       command

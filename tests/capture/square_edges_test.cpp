@@ -41,6 +41,12 @@ TEST(SquareEdges, ThereIsNoEdgeWithoutContrast) {
   EXPECT_FALSE(measure_edge(GrayImage(41, 41, 90), {20, 5}, {20, 35}, 8.0));
 }
 
+TEST(SquareEdges, LongEdgesMayBeWider) {
+  const EdgeMeasure wide{9.0, 150.0, 20.0, 1.66, 310.0}, shorter{9.0, 150.0, 20.0, 1.66, 290.0};
+  EXPECT_EQ(edge_fault({{wide}, {wide}}, {}), "");
+  EXPECT_THAT(edge_fault({{shorter}, {shorter}}, {}), ::testing::HasSubstr("at most 8.7 are"));
+}
+
 TEST(SquareEdges, FaultsNameTheirFigures) {
   const EdgeMeasure sharp{2.0, 150.0, 20.0, 0.0}, wide{9.04, 150.0, 20.0, 0.0},
       bleeding{2.0, 150.0, 20.0, 1.66};

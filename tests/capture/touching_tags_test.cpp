@@ -46,17 +46,46 @@ TEST(SaddleCorner, IsFoundToAFewHundredthsOfAPixelAndNotAtTheCornerOfOneSquare) 
   EXPECT_FALSE(detail::find_saddle(view(false), about, axes, 1.0));
 }
 
-TEST(ShrunkBlack, WhiteGrowsAndLargeImagesAreReduced) {
+TEST(ShrunkBlack, WhiteGrowsByAPixelAlongRowsAndColumns) {
   GrayImage image(9, 9, 255);
   for (int v = 3; v < 6; ++v) {
     for (int u = 3; u < 6; ++u) image(u, v) = 0;
   }
-  const GrayImage smaller = detail::shrunk_black(image, 1, 1);
+  const GrayImage smaller = detail::shrunk_black(image, 1.0);
   EXPECT_EQ(std::count(smaller.pixels.begin(), smaller.pixels.end(), 0), 1);
   EXPECT_EQ(smaller(4, 4), 0);
-  EXPECT_EQ(detail::shrunk_black(image, 3, 0)(1, 1), 0);
-  EXPECT_EQ(detail::reduction(GrayImage(1280, 1024)), 1);
-  EXPECT_EQ(detail::reduction(GrayImage(4000, 3000)), 3);
+}
+
+TEST(ShrunkBlack, PlacesAtAnotherSizeAreThoseOfTheOriginal) {
+  GrayImage image(60, 60, 255);
+  for (int v = 20; v < 40; ++v) {
+    for (int u = 10; u < 50; ++u) image(u, v) = 0;
+  }
+  for (const double scale : {0.4, 0.5, 1.5}) {
+    const GrayImage other = detail::shrunk_black(image, scale);
+    ASSERT_EQ(other.width, static_cast<int>(60 * scale));
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    double dark = 0.0;
+    for (int v = 0; v < other.height; ++v) {
+      for (int u = 0; u < other.width; ++u) {
+        sum += (255 - other(u, v)) * Eigen::Vector2d(u, v);
+        dark += 255 - other(u, v);
+      }
+    }
+    const Eigen::Vector2d middle = detail::at_full_size(sum / dark, scale);
+    EXPECT_NEAR(middle.x(), 29.5, 0.1) << scale;
+    EXPECT_NEAR(middle.y(), 29.5, 0.1) << scale;
+  }
+}
+
+TEST(ShrunkBlack, LargeImagesAreSearchedAtReducedSizeFirst) {
+  const std::vector<double> small = detail::search_scales(GrayImage(1280, 1024));
+  ASSERT_EQ(small.size(), 2u);
+  EXPECT_EQ(small[0], 1.0);
+  EXPECT_EQ(small[1], 1.5);
+  const std::vector<double> large = detail::search_scales(GrayImage(4000, 3000));
+  EXPECT_NEAR(large.front() * large.front() * 12e6, 1.5e6, 1.0);
+  EXPECT_GE(large.back(), 1.0);
 }
 
 #ifdef KINECAL_HAVE_APRILTAG

@@ -5,56 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
+#include <optional>
 #include <utility>
 
 #include "kinecal/capture/april_tags.hpp"
+#include "kinecal/capture/marker_tags.hpp"
+#include "kinecal/capture/opencv_corners.hpp"
 #include "kinecal/capture/other_tags.hpp"
-#include "kinecal/capture/tag_layout.hpp"
-#include "kinecal/capture/touching_tags.hpp"
+#include "kinecal/capture/tag_target.ipp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
-
-/// The tags of a target, in the order of their ids.
-[[nodiscard]] std::vector<PlacedTag> all_tags(const AprilTagSettings& s) {
-  std::vector<PlacedTag> tags = grid_tags(s);
-  tags.insert(tags.end(), s.tags.begin(), s.tags.end());
-  std::sort(tags.begin(), tags.end(),
-            [](const PlacedTag& a, const PlacedTag& b) { return a.id < b.id; });
-  return tags;
-}
-
-/// Where squares may touch tags: single tags have none.
-[[nodiscard]] TouchingGrid touching_grid(const AprilTagSettings& s) {
-  TouchingGrid grid{s.spacing, s.max_wrong_bits};
-  for (const PlacedTag& tag : grid_tags(s)) grid.ids.push_back(tag.id);
-  return grid;
-}
-
-void check_tags(const AprilTagSettings& s, const std::vector<PlacedTag>& tags) {
-  if (tags.empty()) {
-    throw std::invalid_argument("a target of AprilTags needs columns and rows of a grid, or tags");
-  }
-  for (std::size_t i = 0; i < tags.size(); ++i) {
-    const std::string name = "AprilTag " + std::to_string(tags[i].id);
-    if (!(tags[i].size > 0.0) || tags[i].id < 0) {
-      throw std::invalid_argument(name + " has a size of " + std::to_string(tags[i].size) +
-                                  " m: sizes must be positive, ids not negative");
-    }
-    if (i > 0 && tags[i].id == tags[i - 1].id) {
-      throw std::invalid_argument(name + " is on the target twice");
-    }
-  }
-  if (!(s.spacing >= 0.0) || !(s.min_side > 0.0) || !(s.decimate >= 1.0) || s.min_tags < 1 ||
-      s.border < 1 || s.border > 4 || s.max_wrong_bits < 0 || s.max_wrong_bits > 2) {
-    throw std::invalid_argument(
-        "AprilTags: spacing >= 0, min_side > 0, decimate >= 1, min_tags >= 1, border 1 to 4 and "
-        "max_wrong_bits 0 to 2 are possible");
-  }
-}
 
 /// The usable tags in an image.
 struct TagsSeen {
@@ -121,10 +84,23 @@ void add_tag(const GrayImage& image, const PlacedTag& placed, const SeenTag& tag
 }  // namespace
 }  // namespace detail
 
+/// Finds AprilTags with libapriltag, markers of ArUco with OpenCV.
 struct AprilTagFinder::Detector {
-  detail::TagReader reader;
+  std::string dictionary;                   ///< of ArUco; empty: a family of AprilTags
+  std::optional<detail::TagReader> reader;  ///< of that family
   detail::OtherTags others;
   detail::TouchingGrid grid;
+
+  [[nodiscard]] std::string fault() const {
+    return reader ? detail::april_tag_fault() : detail::aruco_fault();
+  }
+  [[nodiscard]] double cells() const {
+    return reader ? reader->cells() : detail::marker_cells(dictionary);
+  }
+  [[nodiscard]] std::vector<detail::SeenTag> read(const GrayImage& image) const {
+    if (!reader) return detail::read_marker_tags(image, dictionary);
+    return detail::with_touching_tags(*reader, image, grid, reader->read(image));
+  }
 };
 
 AprilTagFinder::AprilTagFinder(AprilTagSettings settings)
@@ -133,21 +109,23 @@ AprilTagFinder::AprilTagFinder(AprilTagSettings settings)
       detector_(nullptr, [](Detector* d) { delete d; }) {
   detail::check_tags(settings_, tags_);
   check_target(settings_.target);
-  detector_.reset(new Detector{detail::TagReader(settings_.family, settings_.border,
-                                                 settings_.max_wrong_bits, settings_.decimate),
-                               detail::OtherTags(settings_, tags_),
-                               detail::touching_grid(settings_)});
+  const AprilTagSettings& set = settings_;
+  detector_.reset(new Detector{"", {}, detail::OtherTags(set, tags_), detail::touching_grid(set)});
+  if (detail::is_marker_dictionary(set.family)) {
+    detector_->dictionary = set.family;
+  } else {
+    detector_->reader.emplace(set.family, set.border, set.max_wrong_bits, set.decimate);
+  }
 }
 
 Found AprilTagFinder::find(const View& view) const {
-  if (const auto fault = detail::april_tag_fault(); !fault.empty()) return refused(fault);
+  if (const auto fault = detector_->fault(); !fault.empty()) return refused(fault);
   if (const auto fault = view_fault(view, settings_.target.corners); !fault.empty()) {
     return refused(fault);
   }
-  const std::vector<detail::SeenTag> read = detail::with_touching_tags(
-      detector_->reader, view.image, detector_->grid, detector_->reader.read(view.image));
+  const std::vector<detail::SeenTag> read = detector_->read(view.image);
   detail::TagsSeen seen =
-      detail::tags_seen(view.image, read, tags_, detector_->reader.cells(), settings_.min_side);
+      detail::tags_seen(view.image, read, tags_, detector_->cells(), settings_.min_side);
   std::vector<Mark> marks = marks_of(seen.corners);
   if (seen.twice >= 0) {
     return refused("tag " + std::to_string(seen.twice) + " is seen twice: which is meant?", marks);

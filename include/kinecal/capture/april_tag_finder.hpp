@@ -1,4 +1,5 @@
-// A Finder for AprilTags, a grid or single ones on one target; some tags may be out of view.
+// A Finder for AprilTags and markers of ArUco, a grid or single ones on one target; some tags may be out
+// of view.
 //
 //   const AprilTagFinder finder({.columns = 6, .rows = 6, .size = 0.088, .spacing = 0.3});
 //
@@ -33,19 +34,22 @@ struct AprilTagSettings {
   double spacing = 0.3;              ///< gap between tags, as a fraction of the size (tagSpacing)
   int first_id = 0;                  ///< of the tag at the bottom left
   std::vector<PlacedTag> tags = {};  ///< instead of a grid, or besides it
-  std::string family = "tag36h11";   ///< one of april_tag_families()
-  int border = 1;                    ///< bits of the black border: 2 in Kalibr's own PDFs
-  int max_wrong_bits = 1;            ///< tolerated in a tag's code, 0 to 2
-  double min_side = 24.0;            ///< of a tag, pixels; ignores smaller ones
-  int min_tags = 1;                  ///< that must be seen
-  double decimate = 2.0;             ///< searches an image smaller by this factor
-  TargetSettings target = {};        ///< its sensors, and requirements on its image
+  std::string family =
+      "tag36h11";              ///< one of april_tag_families(), or a dictionary of ArUco such as
+                               ///< DICT_4X4_50
+  int border = 1;              ///< bits of the black border: 2 in Kalibr's own PDFs
+  int max_wrong_bits = 1;      ///< tolerated in a tag's code, 0 to 2
+  double min_side = 24.0;      ///< of a tag, pixels; ignores smaller ones
+  int min_tags = 1;            ///< that must be seen
+  double decimate = 2.0;       ///< searches an image smaller by this factor
+  TargetSettings target = {};  ///< its sensors, and requirements on its image
 };
 
 /// Names of the families of tags.
 [[nodiscard]] const std::vector<std::string>& april_tag_families();
 
-/// Finds the tags of one target with libapriltag, on one thread.  Not thread-safe.
+/// Finds the tags of one target on one thread: AprilTags with libapriltag, markers of ArUco with OpenCV.
+/// Not thread-safe.
 class AprilTagFinder {
  public:
   /// @throws std::invalid_argument  if the family is unknown, there is no tag, two have the same

@@ -39,7 +39,8 @@ namespace detail {
   if (found == names.end()) {
     std::string known;
     for (const auto& name : names) known += (known.empty() ? "" : ", ") + name;
-    throw std::invalid_argument("there is no family '" + family + "' of AprilTags, only " + known);
+    throw std::invalid_argument("there is no family '" + family + "' of AprilTags, only " + known +
+                                " (and dictionaries of ArUco)");
   }
   return static_cast<std::size_t>(found - names.begin());
 }

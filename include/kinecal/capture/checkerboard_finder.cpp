@@ -89,6 +89,12 @@ CheckerboardFinder::CheckerboardFinder(CheckerboardSettings settings)
                                 std::to_string(settings_.size) + " m");
   }
   check_target(settings_.target);
+  if (settings_.target.corners == CornerKind::pose &&
+      turns_alike(settings_.points_x, settings_.points_y) < 4) {
+    throw std::invalid_argument("a " + detail::board_text(settings_) +
+                                " looks the same when rotated, so it has no pose of its own: take "
+                                "its corners (CheckerboardFinder2d), or another board");
+  }
 }
 
 Found CheckerboardFinder::find(const View& view) const {

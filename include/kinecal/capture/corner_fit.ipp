@@ -1,4 +1,4 @@
-// Fits a homography and a lens to the corners of a view, for board_fit.cpp.
+// Fits a homography and a lens to the corners of a view, for board_fit.cpp and disc_centres.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "kinecal/capture/marker_tags.hpp"
 #include "kinecal/text/counted.hpp"
 
 namespace kinecal::detail {
@@ -38,9 +39,10 @@ std::string OtherTags::other_ids(const std::vector<SeenTag>& found) const {
 }
 
 /// The kinds of tags to look for, other than the target's own.  Few codes of 16 or 25 bits are found
-/// by chance, so for one or two tags they are no evidence.
+/// by chance, so for one or two tags they are no evidence.  None for markers of ArUco.
 std::vector<TagKind> OtherTags::kinds() const {
   std::vector<TagKind> all;
+  if (is_marker_dictionary(own_.family)) return all;
   for (const std::string& family : april_tag_families()) {
     const bool is_weak = family.starts_with("tag16") || family.starts_with("tag25");
     if (is_weak && least_ < 3) continue;

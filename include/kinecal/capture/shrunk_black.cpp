@@ -3,51 +3,51 @@
 #include "kinecal/capture/shrunk_black.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "kinecal/capture/square_edges.hpp"
 
 namespace kinecal::detail {
 
-int reduction(const GrayImage& image) {
-  constexpr double kMost = 1.5e6;
+std::vector<double> search_scales(const GrayImage& image) {
+  constexpr double kFirstPixels = 1.5e6, kStep = 1.5, kMost = 1.5;
   const double pixels = static_cast<double>(image.width) * image.height;
-  int factor = 1;
-  while (pixels > kMost * factor * factor) ++factor;
-  return factor;
+  std::vector<double> scales = {std::min(1.0, std::sqrt(kFirstPixels / pixels))};
+  while (scales.back() * kStep <= kMost) scales.push_back(scales.back() * kStep);
+  return scales;
 }
 
 namespace {
 
-[[nodiscard]] GrayImage block_means(const GrayImage& image, int factor) {
-  if (factor == 1) return image;
-  GrayImage small(image.width / factor, image.height / factor);
-  const int count = factor * factor;
-  for (int v = 0; v < small.height; ++v) {
-    for (int u = 0; u < small.width; ++u) {
-      int sum = count / 2;
-      for (int j = 0; j < factor; ++j) {
-        for (int i = 0; i < factor; ++i) sum += image(u * factor + i, v * factor + j);
+/// An image at another size: each pixel is a mean over its area.
+[[nodiscard]] GrayImage resized(const GrayImage& image, double scale) {
+  GrayImage sized(std::max(1, static_cast<int>(image.width * scale)),
+                  std::max(1, static_cast<int>(image.height * scale)));
+  const int side = std::max(1, static_cast<int>(std::ceil(1.0 / scale - 1e-9)));  // of samples
+  for (int v = 0; v < sized.height; ++v) {
+    for (int u = 0; u < sized.width; ++u) {
+      double sum = 0.0;
+      for (int j = 0; j < side; ++j) {
+        for (int i = 0; i < side; ++i) {
+          const Eigen::Vector2d off((i + 0.5) / side - 0.5, (j + 0.5) / side - 0.5);
+          sum += brightness_at(image, at_full_size(Eigen::Vector2d(u, v) + off, scale));
+        }
       }
-      small(u, v) = static_cast<std::uint8_t>(sum / count);
+      sized(u, v) = static_cast<std::uint8_t>(std::lround(sum / (side * side)));
     }
   }
-  return small;
+  return sized;
 }
 
 }  // namespace
 
-GrayImage shrunk_black(const GrayImage& image, int factor, int pixels) {
-  GrayImage now = block_means(image, factor);
-  for (int pass = 0; pass < pixels; ++pass) {
-    GrayImage rows = now;
-    for (int v = 0; v < now.height; ++v) {
-      for (int u = 1; u + 1 < now.width; ++u) {
-        rows(u, v) = std::max({now(u - 1, v), now(u, v), now(u + 1, v)});
-      }
-    }
-    now = rows;
-    for (int v = 1; v + 1 < now.height; ++v) {
-      for (int u = 0; u < now.width; ++u) {
-        now(u, v) = std::max({rows(u, v - 1), rows(u, v), rows(u, v + 1)});
-      }
+GrayImage shrunk_black(const GrayImage& image, double scale) {
+  const GrayImage before = scale == 1.0 ? image : resized(image, scale);
+  GrayImage now = before;
+  for (int v = 1; v + 1 < now.height; ++v) {
+    for (int u = 1; u + 1 < now.width; ++u) {
+      now(u, v) = std::max(
+          {before(u, v), before(u - 1, v), before(u + 1, v), before(u, v - 1), before(u, v + 1)});
     }
   }
   return now;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "kinecal/geometry/median.hpp"
 
@@ -67,6 +68,7 @@ std::optional<EdgeMeasure> measure_edge(const GrayImage& image, const Eigen::Vec
     steepest = std::max(steepest, (profile[k + 1] - profile[k - 1]) / (2.0 * detail::kEdgeStep));
   }
   edge.width = edge.contrast / steepest;
+  edge.length = (b - a).norm();
   const double middle = edge.dark + edge.contrast / 2.0;
   std::size_t k = 1;
   while (k + 1 < n && profile[k] < middle) ++k;
@@ -77,24 +79,30 @@ std::optional<EdgeMeasure> measure_edge(const GrayImage& image, const Eigen::Vec
 }
 
 std::string edge_fault(const std::vector<EdgeMeasure> (&edges)[2], const TargetQuality& quality) {
-  double width = 0.0, bleed = 0.0;
+  constexpr double kWidthOfLength = 0.03, kBleedOfLength = 0.01;
   for (const auto& direction : edges) {
     if (direction.empty()) return "there is no contrast between its squares";
-    std::vector<double> widths, bleeds;
-    for (const EdgeMeasure& e : direction) {
-      widths.push_back(e.width);
-      bleeds.push_back(e.bleed);
+  }
+  const auto worst = [&](double EdgeMeasure::*value) {
+    double most = 0.0;
+    for (const auto& direction : edges) {
+      std::vector<double> values;
+      for (const EdgeMeasure& e : direction) values.push_back(e.*value);
+      most = std::max(most, median_of(std::move(values)));
     }
-    width = std::max(width, median_of(widths));
-    bleed = std::max(bleed, median_of(bleeds));
-  }
-  if (width > quality.max_edge_width) {
+    return most;
+  };
+  const double length = worst(&EdgeMeasure::length), width = worst(&EdgeMeasure::width),
+               bleed = worst(&EdgeMeasure::bleed);
+  const double max_width = std::max(quality.max_edge_width, kWidthOfLength * length),
+               max_bleed = std::max(quality.max_bleed, kBleedOfLength * length);
+  if (width > max_width) {
     return "blurred: edges are " + detail::one_digit(width) + " pixels wide, at most " +
-           detail::one_digit(quality.max_edge_width) + " are allowed; is the robot still moving?";
+           detail::one_digit(max_width) + " are allowed; is the robot still moving?";
   }
-  if (bleed > quality.max_bleed) {
+  if (bleed > max_bleed) {
     return "over-exposed: white bleeds " + detail::one_digit(bleed) +
-           " pixels into the dark squares, at most " + detail::one_digit(quality.max_bleed) +
+           " pixels into the dark squares, at most " + detail::one_digit(max_bleed) +
            " are allowed; expose for a shorter time";
   }
   return "";

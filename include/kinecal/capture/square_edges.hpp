@@ -24,6 +24,7 @@ struct EdgeMeasure {
   double contrast = 0.0;  ///< bright side minus dark side, of 255
   double dark = 0.0;      ///< of the dark side, 0 to 255
   double bleed = 0.0;     ///< from the edge's true position into the dark side, pixels
+  double length = 0.0;    ///< pixels
 };
 
 /// Measures the edge from corner a to corner b.
@@ -34,7 +35,8 @@ struct EdgeMeasure {
                                                       const Eigen::Vector2d& a,
                                                       const Eigen::Vector2d& b, double reach);
 
-/// Requirements on the image of a target.
+/// Requirements on the image of a target.  Widths and bleeds may be larger in images of many pixels: up to
+/// 3 and 1 % of an edge's length.
 struct TargetQuality {
   double min_square = 8.0;      ///< side of the smallest square, pixels
   double max_edge_width = 6.0;  ///< pixels: blur by about 2.4, or a smear of 6

@@ -9,6 +9,7 @@
 #include "kinecal/capture/board_fit.hpp"
 #include "kinecal/capture/board_grid.hpp"
 #include "kinecal/capture/corner_depth.hpp"
+#include "kinecal/capture/target_pose.hpp"
 
 namespace kinecal {
 
@@ -33,6 +34,45 @@ namespace {
   return marks;
 }
 
+/// The observations of a target's pose.
+[[nodiscard]] Found observed_pose(const View& view, const TargetSettings& settings,
+                                  const std::vector<TargetCorner>& corners,
+                                  std::vector<Mark> marks) {
+  const TargetPose pose = target_pose(corners, *view.camera);
+  if (!pose.camera_T_target) return refused(pose.fault, std::move(marks));
+  Observation camera{settings.camera_sensor, {}, view.camera}, chain{settings.chain_sensor, {}, {}};
+  camera.features.push_back(
+      {view.frame, pose.camera_T_target->translation, pose.camera_T_target->rotation, {}, {}});
+  chain.features.push_back(
+      {settings.frame, Vector3<double>::Zero(), Matrix3<double>::Identity(), {}, {}});
+  return {{std::move(camera), std::move(chain)}, "", std::move(marks), {}, {}};
+}
+
+/// The observations of a target's corners.
+[[nodiscard]] Found observed_corners(const View& view, const TargetSettings& settings,
+                                     const std::vector<TargetCorner>& corners,
+                                     std::vector<Mark> marks) {
+  Observation camera{settings.camera_sensor, {}, view.camera}, chain{settings.chain_sensor, {}, {}};
+  for (const TargetCorner& c : corners) {
+    std::optional<Vector3<double>> seen = Vector3<double>(c.pixel.x(), c.pixel.y(), 0.0);
+    if (settings.corners == CornerKind::points) {
+      seen = point_at(view.points, c.pixel, std::min(c.reach, kFarthestDepth));
+    }
+    if (!seen) continue;
+    camera.features.push_back({view.frame, *seen, {}, {}, c.id});
+    chain.features.push_back({settings.frame, c.target, {}, {}, c.id});
+  }
+  const std::size_t missing = corners.size() - camera.features.size();
+  if (static_cast<double>(missing) >
+          settings.max_without_depth * static_cast<double>(corners.size()) ||
+      camera.features.empty()) {
+    return refused("depth is missing at " + std::to_string(missing) + " of " +
+                       std::to_string(corners.size()) + " corners",
+                   std::move(marks));
+  }
+  return {{std::move(camera), std::move(chain)}, "", std::move(marks), {}, {}};
+}
+
 }  // namespace
 
 }  // namespace detail
@@ -47,7 +87,7 @@ std::string view_fault(const View& view, CornerKind corners) {
     return "camera_info is of " + detail::pixels_text(camera.width, camera.height) +
            " pixels, the image has " + size;
   }
-  if (corners == CornerKind::pixels) return "";
+  if (corners != CornerKind::points) return "";
   if (view.points.empty()) return "the view has no cloud, and 3-D corners are wanted";
   if (view.points.width != image.width || view.points.height != image.height) {
     return "the cloud has " + detail::pixels_text(view.points.width, view.points.height) +
@@ -74,30 +114,16 @@ Found observed(const View& view, const TargetSettings& settings,
   const std::string fault = board_fault(fit);
   if (!fault.empty()) return refused(fault, std::move(marks));
   drop_wrong_corners(fit, corners);
-  Observation camera{settings.camera_sensor, {}, view.camera}, chain{settings.chain_sensor, {}, {}};
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const TargetCorner& c = corners[i];
-    if (i > 0 && corners[i - 1].id == c.id) {
-      throw std::invalid_argument("two corners have id " + std::to_string(c.id));
-    }
-    std::optional<Vector3<double>> seen = Vector3<double>(c.pixel.x(), c.pixel.y(), 0.0);
-    if (settings.corners == CornerKind::points) {
-      seen = point_at(view.points, c.pixel, std::min(c.reach, detail::kFarthestDepth));
-    }
-    if (!seen) continue;
-    camera.features.push_back({view.frame, *seen, {}, {}, c.id});
-    chain.features.push_back({settings.frame, c.target, {}, {}, c.id});
-  }
-  const std::size_t missing = corners.size() - camera.features.size();
-  if (static_cast<double>(missing) >
-          settings.max_without_depth * static_cast<double>(corners.size()) ||
-      camera.features.empty()) {
-    return refused("depth is missing at " + std::to_string(missing) + " of " +
-                       std::to_string(corners.size()) + " corners",
-                   std::move(marks));
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    if (corners[i - 1].id != corners[i].id) continue;
+    throw std::invalid_argument("two corners have id " + std::to_string(corners[i].id));
   }
   const bool has_dropped = corners.size() < marks.size();
-  Found found{{std::move(camera), std::move(chain)}, "", std::move(marks), {}, std::move(grid)};
+  const auto observe =
+      settings.corners == CornerKind::pose ? detail::observed_pose : detail::observed_corners;
+  Found found = observe(view, settings, corners, std::move(marks));
+  if (!found) return found;
+  found.grid = std::move(grid);
   if (has_dropped) found.notes.emplace_back(kWrongCornersNote);
   return found;
 }

@@ -15,7 +15,8 @@ namespace kinecal {
 /// The kind of the camera's features.
 enum class CornerKind {
   pixels,  ///< (u, v, 0) of the image, for a camera2d sensor
-  points   ///< of the organised cloud, metres, for a camera3d sensor
+  points,  ///< of the organised cloud, metres, for a camera3d sensor
+  pose     ///< one: the pose of the target in the camera, for two chain6d sensors
 };
 
 /// A target's place on the robot, and requirements on its image.
@@ -44,7 +45,7 @@ struct TargetCorner {
 [[nodiscard]] std::vector<Mark> marks_of(const std::vector<TargetCorner>& corners);
 
 /// Observations of the camera and of the chain that holds the target, one feature per corner, in
-/// the order of the ids; or why there are none.  Corners that are far from where the others put them
+/// the order of the ids, or one pose (target_pose.hpp); or why there are none.  Corners that are far from where the others put them
 /// are left out (board_fit.hpp).
 /// @throws std::invalid_argument  if two corners have the same id
 [[nodiscard]] Found observed(const View& view, const TargetSettings& settings,

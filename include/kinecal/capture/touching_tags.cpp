@@ -139,8 +139,7 @@ class TouchingSearch {
 
 std::vector<SeenTag> with_touching_tags(const TagReader& reader, const GrayImage& image,
                                         const TouchingGrid& grid, std::vector<SeenTag> found) {
-  constexpr std::size_t kEnough = 4;  // tags at none of which squares are
-  constexpr int kMostShrinks = 2;
+  constexpr std::size_t kEnough = 4;
   if (reader.codes().codes.empty() || grid.ids.size() < 2 || !(grid.spacing > 0.0)) return found;
   TouchingSearch search(image, reader.codes(), grid);
   std::size_t ours = 0;
@@ -148,16 +147,15 @@ std::vector<SeenTag> with_touching_tags(const TagReader& reader, const GrayImage
     search.add(tag);
     ours += grid.has(tag.id) ? 1 : 0;
   }
-  if (search.tags().empty() && ours >= kEnough) return found;
-  for (int shrinks = 1; shrinks <= kMostShrinks; ++shrinks) {
-    if (search.tags().size() >= (shrinks == 1 ? grid.ids.size() : kEnough)) break;
-    const int factor = reduction(image);
-    for (SeenTag seed : reader.read_roughly(shrunk_black(image, factor, shrinks))) {
-      for (Eigen::Vector2d& corner : seed.corners) {
-        corner = factor * corner + Eigen::Vector2d::Constant(0.5 * (factor - 1));
-      }
+  if (search.tags().empty() && ours >= kEnough) return found;  // at none of which squares are
+  for (const double scale : search_scales(image)) {
+    const std::size_t before = search.tags().size();
+    if (before >= grid.ids.size()) break;
+    for (SeenTag seed : reader.read_roughly(shrunk_black(image, scale))) {
+      for (Eigen::Vector2d& corner : seed.corners) corner = at_full_size(corner, scale);
       search.add(seed);
     }
+    if (before >= kEnough && search.tags().size() == before) break;
   }
   if (search.tags().empty()) return found;
   std::erase_if(found,

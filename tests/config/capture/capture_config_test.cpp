@@ -145,6 +145,36 @@ TEST(CaptureConfig, EveryKeyOfTheTagFinderIsRead) {
   EXPECT_EQ(tags.target.quality.max_bleed, 2.0);
 }
 
+TEST(CaptureConfig, MarkersOfArucoAreTagsOfADictionary) {
+  const CaptureFile file(
+      "features:\n  f: {type: ArucoFinder6d, dictionary: DICT_5X5_100, tags: [{id: 7, size: "
+      "0.08}]}\n");
+  EXPECT_THAT(file.diagnostics.errors, IsEmpty());
+  EXPECT_THAT(file.diagnostics.warnings, IsEmpty());
+  const auto& tags = std::get<AprilTagSettings>(file.config.finders.at(0).settings);
+  EXPECT_EQ(tags.family, "DICT_5X5_100");
+  EXPECT_EQ(tags.target.corners, CornerKind::pose);
+  ASSERT_EQ(tags.tags.size(), 1u);
+  EXPECT_EQ(tags.tags[0].id, 7);
+  EXPECT_EQ(tags.tags[0].size, 0.08);
+  const CaptureFile wrong("features:\n  f: {type: ArucoFinder2d, family: tag36h11, size: 0.1}\n");
+  EXPECT_THAT(wrong.diagnostics.warnings, ElementsAre(HasSubstr("unknown key 'family'")));
+}
+
+TEST(CaptureConfig, GridsOfDiscsAreRead) {
+  const CaptureFile file(
+      "features:\n  f: {type: CircleGridFinder2d, points_x: 7, points_y: 5, size: 0.03, pattern: "
+      "symmetric}\n  g: {type: CircleGridFinder, size: 0.02, pattern: round}\n");
+  EXPECT_THAT(file.diagnostics.warnings, IsEmpty());
+  EXPECT_THAT(file.diagnostics.errors, ElementsAre(HasSubstr("pattern")));
+  const auto& grid = std::get<CircleGridSettings>(file.config.finders.at(0).settings);
+  EXPECT_EQ(grid.points_x, 7);
+  EXPECT_EQ(grid.points_y, 5);
+  EXPECT_EQ(grid.size, 0.03);
+  EXPECT_FALSE(grid.asymmetric);
+  EXPECT_EQ(grid.target.corners, CornerKind::pixels);
+}
+
 TEST(CaptureConfig, ADefaultSizeIsNoted) {
   const CaptureFile board("features:\n  f: {type: CheckerboardFinder}\n");
   EXPECT_THAT(board.diagnostics.notes,

@@ -127,7 +127,7 @@ TEST_F(ImageFolderTest, AFolderWithoutImagesIsAnError) {
       error_of([&] {
         (void)list_images({folder_.path().string(), path("poses.csv"), "", ""}, diagnostics);
       }),
-      HasSubstr("has no PNG or JPEG images"));
+      HasSubstr("has no PNG, JPEG, BMP or TIFF images"));
 }
 
 #ifdef KINECAL_HAVE_PNG

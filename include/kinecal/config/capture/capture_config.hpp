@@ -18,6 +18,7 @@
 #include "kinecal/capture/april_tag_finder.hpp"
 #include "kinecal/capture/charuco_finder.hpp"
 #include "kinecal/capture/checkerboard_finder.hpp"
+#include "kinecal/capture/circle_grid_finder.hpp"
 #include "kinecal/capture/led_finder.hpp"
 #include "kinecal/capture/plane_finder.hpp"
 #include "kinecal/capture/robot_finder.hpp"
@@ -35,8 +36,9 @@ struct CaptureChain {
 };
 
 /// Settings of any finder.
-using FinderSettings = std::variant<LedFinder, CheckerboardSettings, AprilTagSettings,
-                                    CharucoSettings, PlaneFinder, ScanFinder, RobotFinder>;
+using FinderSettings =
+    std::variant<LedFinder, CheckerboardSettings, AprilTagSettings, CharucoSettings,
+                 CircleGridSettings, PlaneFinder, ScanFinder, RobotFinder>;
 
 /// A finder and the source of its views.
 struct CaptureFinder {

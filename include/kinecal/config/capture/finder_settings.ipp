@@ -11,103 +11,10 @@
 
 #include "kinecal/config/capture/capture_config.hpp"
 #include "kinecal/config/capture/led_settings.ipp"
+#include "kinecal/config/capture/target_settings.ipp"
 #include "kinecal/config/config_items.ipp"
 
 namespace kinecal::detail {
-
-/// An integer of at least zero.
-[[nodiscard]] inline int read_index(ConfigMap& map, const std::string& key, int fallback) {
-  const double number = map.number(key, fallback);
-  if (number >= 0.0 && number <= 1e6 && number == static_cast<int>(number)) {
-    return static_cast<int>(number);
-  }
-  map.error(map.place(), key + " is not an integer from 0");
-  return fallback;
-}
-
-/// Reads the sensors of a finder of a target, and the kind of its corners.
-inline void read_target(ConfigMap& map, TargetSettings& target) {
-  target.camera_sensor = map.text("camera_sensor_name").value_or(target.camera_sensor);
-  target.chain_sensor = map.text("chain_sensor_name").value_or(target.chain_sensor);
-  // ROS 2 reads this name of the key in place of the other, for checkerboards.
-  target.chain_sensor = map.text("chain_sensor_name_id").value_or(target.chain_sensor);
-  target.frame = map.text("frame_id").value_or(target.frame);
-  TargetQuality& quality = target.quality;
-  quality.min_square = map.positive("min_square", quality.min_square);
-  quality.max_edge_width = map.positive("max_edge_width", quality.max_edge_width);
-  quality.max_glare = map.number("max_glare", quality.max_glare);
-  quality.max_bleed = map.positive("max_bleed", quality.max_bleed);
-  target.max_without_depth = map.number("max_without_depth", target.max_without_depth);
-}
-
-/// A length that decides the scale of the result.  Notes the default, if it is taken.
-[[nodiscard]] inline double read_scale(ConfigMap& map, const std::string& key, double fallback,
-                                       const std::string& what) {
-  if (map.peek(key) == nullptr) {
-    map.note(map.place(), key + " is not given: " + what + " of " +
-                              number_to_yaml(1000.0 * fallback) + " mm are assumed");
-  }
-  return map.positive(key, fallback);
-}
-
-[[nodiscard]] inline CheckerboardSettings read_checkerboard(ConfigMap& map, CornerKind corners) {
-  CheckerboardSettings board;
-  board.points_x = map.count("points_x", board.points_x);
-  board.points_y = map.count("points_y", board.points_y);
-  board.size = read_scale(map, "size", board.size, "squares");
-  (void)read_choice(map, "checkerboard_type", "chess_board", {"chess_board"});  // of a fork
-  board.target.corners = corners;
-  read_target(map, board.target);
-  if (const ConfigEntry* link = map.find("camera_link")) {  // of a fork
-    map.warning(link->place, "camera_link is ignored: points stay in the frame of the camera");
-  }
-  map.ignore({"debug", "max_trials_count"});
-  return board;
-}
-
-[[nodiscard]] inline AprilTagSettings read_april_tags(ConfigMap& map, CornerKind corners) {
-  AprilTagSettings tags;
-  tags.columns = read_index(map, "columns", 0);
-  tags.rows = read_index(map, "rows", 0);
-  tags.size = map.positive("size", 0.0);
-  if (tags.columns * tags.rows > 1 && map.peek("spacing") == nullptr) {
-    map.note(map.place(), "spacing is not given: gaps of 0.3 times the size are assumed");
-  }
-  tags.spacing = map.number("spacing", tags.spacing);
-  tags.first_id = read_index(map, "first_id", tags.first_id);
-  tags.family = map.text("family").value_or(tags.family);
-  tags.border = map.count("border", tags.border);
-  tags.min_tags = map.count("min_tags", tags.min_tags);
-  tags.max_wrong_bits = read_index(map, "max_wrong_bits", tags.max_wrong_bits);
-  tags.min_side = map.positive("min_side", tags.min_side);
-  tags.decimate = map.positive("decimate", tags.decimate);
-  tags.target.corners = corners;
-  read_target(map, tags.target);
-  for (const ConfigEntry& element : map.list("tags")) {
-    auto tag = map.map(element, "tag");
-    if (!tag) continue;
-    const int id = read_index(*tag, "id", 0);
-    tags.tags.push_back({id, tag->positive("size", tags.size), read_corner(*tag, "", {0, 0, 0})});
-    tag->report_unknown();
-  }
-  return tags;
-}
-
-[[nodiscard]] inline CharucoSettings read_charuco(ConfigMap& map, CornerKind corners) {
-  CharucoSettings board;
-  board.squares_x = map.count("squares_x", board.squares_x);
-  board.squares_y = map.count("squares_y", board.squares_y);
-  board.square_size = read_scale(map, "square_size", board.square_size, "squares");
-  board.marker_size = read_scale(map, "marker_size", board.marker_size, "markers");
-  board.dictionary = map.text("dictionary").value_or(board.dictionary);
-  board.first_id = read_index(map, "first_id", board.first_id);
-  board.legacy = map.flag("legacy", board.legacy);
-  board.min_corners = map.count("min_corners", board.min_corners);
-  board.target.corners = corners;
-  read_target(map, board.target);
-  map.ignore({"debug"});
-  return board;
-}
 
 [[nodiscard]] inline PlaneFinder read_plane_finder(ConfigMap& map) {
   PlaneFinder finder;
@@ -145,21 +52,31 @@ inline void read_target(ConfigMap& map, TargetSettings& target) {
   return finder;
 }
 
-/// Reads the settings of each type; upstream's names.
+/// Reads a target whose corners are of a kind.
+template <auto read, CornerKind corners>
+[[nodiscard]] FinderSettings with_corners(ConfigMap& map) {
+  return read(map, corners);
+}
+
+/// Reads the settings of each type; upstream's names.  The corners of a target are points of a cloud, 2d:
+/// pixels, 6d: one pose.
 inline const std::map<std::string, FinderSettings (*)(ConfigMap&)> kFinderTypes = {
     {"LedFinder", [](ConfigMap& map) -> FinderSettings { return read_led_finder(map); }},
-    {"CheckerboardFinder",
-     [](ConfigMap& map) -> FinderSettings { return read_checkerboard(map, CornerKind::points); }},
-    {"CheckerboardFinder2d",
-     [](ConfigMap& map) -> FinderSettings { return read_checkerboard(map, CornerKind::pixels); }},
-    {"AprilTagFinder",
-     [](ConfigMap& map) -> FinderSettings { return read_april_tags(map, CornerKind::points); }},
-    {"AprilTagFinder2d",
-     [](ConfigMap& map) -> FinderSettings { return read_april_tags(map, CornerKind::pixels); }},
-    {"CharucoFinder",
-     [](ConfigMap& map) -> FinderSettings { return read_charuco(map, CornerKind::points); }},
-    {"CharucoFinder2d",
-     [](ConfigMap& map) -> FinderSettings { return read_charuco(map, CornerKind::pixels); }},
+    {"CheckerboardFinder", with_corners<read_checkerboard, CornerKind::points>},
+    {"CheckerboardFinder2d", with_corners<read_checkerboard, CornerKind::pixels>},
+    {"CheckerboardFinder6d", with_corners<read_checkerboard, CornerKind::pose>},
+    {"AprilTagFinder", with_corners<read_april_tags, CornerKind::points>},
+    {"AprilTagFinder2d", with_corners<read_april_tags, CornerKind::pixels>},
+    {"AprilTagFinder6d", with_corners<read_april_tags, CornerKind::pose>},
+    {"ArucoFinder", with_corners<read_markers, CornerKind::points>},
+    {"ArucoFinder2d", with_corners<read_markers, CornerKind::pixels>},
+    {"ArucoFinder6d", with_corners<read_markers, CornerKind::pose>},
+    {"CharucoFinder", with_corners<read_charuco, CornerKind::points>},
+    {"CharucoFinder2d", with_corners<read_charuco, CornerKind::pixels>},
+    {"CharucoFinder6d", with_corners<read_charuco, CornerKind::pose>},
+    {"CircleGridFinder", with_corners<read_circles, CornerKind::points>},
+    {"CircleGridFinder2d", with_corners<read_circles, CornerKind::pixels>},
+    {"CircleGridFinder6d", with_corners<read_circles, CornerKind::pose>},
     {"PlaneFinder", [](ConfigMap& map) -> FinderSettings { return read_plane_finder(map); }},
     {"ScanFinder", [](ConfigMap& map) -> FinderSettings { return read_scan_finder(map); }},
     {"RobotFinder", [](ConfigMap& map) -> FinderSettings { return read_robot_finder(map); }},

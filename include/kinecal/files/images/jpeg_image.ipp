@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/files/images/png_image.ipp"
+#include "kinecal/files/images/image_size.ipp"
 #include "kinecal/files/images/read_image.hpp"
 
 #ifdef KINECAL_HAVE_JPEG

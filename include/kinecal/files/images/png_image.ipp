@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "kinecal/files/images/image_size.ipp"
 #include "kinecal/files/images/read_image.hpp"
 
 #ifdef KINECAL_HAVE_PNG
@@ -13,14 +14,6 @@
 #endif
 
 namespace kinecal::detail {
-
-/// @throws InputError  if an image is too large or has no pixels
-inline void check_image_size(std::uint64_t width, std::uint64_t height, const std::string& name) {
-  if (width > 0 && height > 0 && width <= kMostPixels && height <= kMostPixels / width) return;
-  throw InputError(name + ": has " + std::to_string(width) + "x" + std::to_string(height) +
-                   " pixels; at most " + std::to_string(kMostPixels / 1'000'000) +
-                   " megapixels are read");
-}
 
 #ifdef KINECAL_HAVE_PNG
 /// An image held by libpng until it is freed.

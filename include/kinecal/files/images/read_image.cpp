@@ -4,8 +4,10 @@
 
 #include <cstdint>
 
+#include "kinecal/files/images/bmp_image.ipp"
 #include "kinecal/files/images/jpeg_image.ipp"
 #include "kinecal/files/images/png_image.ipp"
+#include "kinecal/files/images/tiff_image.ipp"
 #include "kinecal/files/text_file.hpp"
 
 namespace kinecal {
@@ -13,7 +15,9 @@ namespace kinecal {
 GrayImage decode_image(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("\x89PNG")) return detail::png_brightness(bytes, name);
   if (bytes.starts_with("\xff\xd8\xff")) return detail::jpeg_brightness(bytes, name);
-  throw InputError(name + ": is neither a PNG nor a JPEG; convert the image to one of them");
+  if (bytes.starts_with("BM")) return detail::bmp_brightness(bytes, name);
+  if (detail::is_tiff(bytes)) return detail::tiff_brightness(bytes, name);
+  throw InputError(name + ": is not a PNG, JPEG, BMP or TIFF; convert the image to one of them");
 }
 
 DepthImage decode_depth(std::string_view bytes, const std::string& name) {

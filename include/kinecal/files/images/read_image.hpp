@@ -1,4 +1,4 @@
-// Reads PNG and JPEG images, with libpng and libjpeg if found at build time.
+// Reads PNG, JPEG, BMP and TIFF images; all but BMP with libpng, libjpeg and libtiff if found at build time.
 //
 // The content identifies the format, not the name.  Damaged files are errors, even if they only end
 // early.
@@ -16,7 +16,8 @@ namespace kinecal {
 /// Largest image to read, pixels.
 inline constexpr int kMostPixels = 100'000'000;
 
-/// Reads a PNG of any kind or a JPEG as brightness; of 16 bits, the upper 8.
+/// Reads an image as brightness; of 16 bits, the upper 8.  PNG of any kind, JPEG, BMP of 8, 24 or 32 bits
+/// without compression, the first page of a TIFF of integers.
 /// @throws InputError  "file: ..." if it is damaged, has more than kMostPixels, has another format,
 ///                     or this build lacks the library
 [[nodiscard]] GrayImage read_image(const std::string& path);

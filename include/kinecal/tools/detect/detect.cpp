@@ -37,6 +37,8 @@ template <class F>
           return shared_finder(AprilTagFinder(chosen));
         } else if constexpr (std::is_same_v<Chosen, CharucoSettings>) {
           return shared_finder(CharucoFinder(chosen));
+        } else if constexpr (std::is_same_v<Chosen, CircleGridSettings>) {
+          return shared_finder(CircleGridFinder(chosen));
         } else {
           return shared_finder(chosen);
         }

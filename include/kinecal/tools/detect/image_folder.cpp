@@ -30,7 +30,8 @@ namespace {
 /// True for the name of an image.
 [[nodiscard]] bool is_image_name(const std::string& name) {
   const std::string ending = in_small_letters(std::filesystem::path(name).extension().string());
-  return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
+  constexpr std::string_view kEndings[] = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"};
+  return std::find(std::begin(kEndings), std::end(kEndings), ending) != std::end(kEndings);
 }
 
 /// Names of the images in a folder, in natural order.
@@ -42,7 +43,7 @@ namespace {
   for (const std::filesystem::directory_entry& file : files) {
     if (is_image_name(file.path().string())) names.push_back(file.path().filename().string());
   }
-  if (names.empty()) throw InputError(folder + ": has no PNG or JPEG images");
+  if (names.empty()) throw InputError(folder + ": has no PNG, JPEG, BMP or TIFF images");
   std::sort(names.begin(), names.end(), file_naturally_before);
   return names;
 }

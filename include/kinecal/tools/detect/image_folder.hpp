@@ -18,7 +18,7 @@ namespace kinecal {
 
 /// Location of photographs.
 struct ImageFolder {
-  std::string images;   ///< folder of PNG and JPEG files
+  std::string images;   ///< folder of PNG, JPEG, BMP or TIFF files
   std::string table;    ///< of joint positions, CSV
   std::string columns;  ///< meaning of its columns; empty: each is a joint, except `image`
   std::string depth;    ///< folder of depth images, same names except the extension; empty: none
