@@ -113,7 +113,7 @@ struct WarmGap {
 template <ErrorBlock B>
 ParameterTable open_table(const B& block) {
   ParameterTable table = scene_table();
-  add_parameters(table, "left", PinholeCamera::kParameters);
+  add_parameters(table, "left", std::span(PinholeCamera::kParameters).first(kIntrinsics));
   add_parameters(table, "wire", DrawWire::kParameters);
   add_parameters(table, "block", parameters_of(block));
   return table;

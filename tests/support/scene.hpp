@@ -34,7 +34,7 @@ inline ParameterTable scene_table() {
   for (const ParameterInfo& info : DepthCamera::kParameters) {
     table.add({.name = parameter_name("camera", info.name)});
   }
-  for (const ParameterInfo& info : PinholeCamera::kParameters) {
+  for (const ParameterInfo& info : std::span(PinholeCamera::kParameters).first(kIntrinsics)) {
     table.add({.name = parameter_name("eye", info.name)});
   }
   return table;

@@ -37,6 +37,14 @@ using Comments = std::map<std::string, std::string>;
   return text;
 }
 
+[[nodiscard]] std::string per_sample_text(const Config& config) {
+  std::string text;
+  for (const FreeParamConfig& frame : config.per_sample) {
+    text += (text.empty() ? "" : ", ") + name_to_yaml(frame.name);
+  }
+  return text.empty() ? "" : "per_sample: [" + text + "]\n";
+}
+
 [[nodiscard]] std::string models_text(const StepConfig& step) {
   std::string text = "\nmodels:\n";
   for (const ModelConfig& model : step.models) {
@@ -172,7 +180,8 @@ std::string config_to_yaml(const Config& config, const std::string& title,
     at = end + 1;
   }
   text += fmt::format("\nbase_link: {}\nmax_num_iterations: {}\n",
-                      detail::name_to_yaml(config.base_link), step.max_num_iterations);
+                      detail::name_to_yaml(config.base_link), step.max_num_iterations) +
+          detail::per_sample_text(config);
   if (config.gravity) {
     const Vector3<double>& g = *config.gravity;
     text += fmt::format("gravity: {{x: {}, y: {}, z: {}}}\n", number_to_yaml(g.x()),

@@ -27,6 +27,10 @@ class Evaluator final : public AnyEvaluator {
   /// @param threads  number of threads that share normal_equations(); zero: one per core
   /// @throws std::invalid_argument  if a free parameter does not belong to the problem
   Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int threads = 0);
+  /// The same for other numbers of the same samples.
+  /// @param batches  must outlive the evaluator
+  Evaluator(const BasicProblem<S>& problem, const std::vector<detail::Batches<S>>& batches,
+            const FreeSet& free, int threads);
 
   Evaluator(const BasicProblem<S>&&, const FreeSet&,
             int = 0) = delete;  ///< the evaluator would outlive it
@@ -88,6 +92,7 @@ class Evaluator final : public AnyEvaluator {
            NormalEquations& total) const;
 
   const BasicProblem<S>& problem_;
+  const std::vector<detail::Batches<S>>& batches_;
   FreeSet free_;
   std::size_t num_batches_ = 0;
   std::vector<detail::SensorState> sensors_;
@@ -107,8 +112,8 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
                           derivatives);
   }
   std::size_t before = 0;
-  for (std::size_t l = 0; l < problem_.batches().size(); ++l) {
-    const detail::Batches<S>& batches = problem_.batches()[l];
+  for (std::size_t l = 0; l < batches_.size(); ++l) {
+    const detail::Batches<S>& batches = batches_[l];
     const detail::SampleLayout& layout = batches.layout();
     const std::size_t size = batches.size();
     const auto part = detail::prefetched_at_once(size, batches.numbers(0).size_bytes(),

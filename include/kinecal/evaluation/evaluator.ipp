@@ -13,7 +13,13 @@ namespace kinecal {
 
 template <class S>
 Evaluator<S>::Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int threads)
-    : problem_(problem), free_(free) {
+    : Evaluator(problem, problem.batches(), free, threads) {}
+
+template <class S>
+Evaluator<S>::Evaluator(const BasicProblem<S>& problem,
+                        const std::vector<detail::Batches<S>>& batches, const FreeSet& free,
+                        int threads)
+    : problem_(problem), batches_(batches), free_(free) {
   problem.check(free);
   std::vector<bool> placed(problem.sensors().size(), false);
   for (int t = 0; t < problem.num_terms(); ++t) {
@@ -27,11 +33,11 @@ Evaluator<S>::Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int
   }
   for (int t = 0; t < problem.num_terms(); ++t) {
     terms_.push_back({OwnParameters(problem.term(t).parameters, free), {}});
-    terms_.back().runs.resize(problem.batches().size());
+    terms_.back().runs.resize(batches.size());
   }
-  for (std::size_t l = 0; l < problem.batches().size(); ++l) {
-    const detail::SampleLayout& layout = problem.batches()[l].layout();
-    num_batches_ += problem.batches()[l].size();
+  for (std::size_t l = 0; l < batches.size(); ++l) {
+    const detail::SampleLayout& layout = batches[l].layout();
+    num_batches_ += batches[l].size();
     for (const detail::TermLayout& place : layout.terms) {
       TermState& term = terms_[static_cast<std::size_t>(place.term)];
       term.runs[l] = detail::feature_runs(problem.term(place.term), layout, sensors_, term.own);

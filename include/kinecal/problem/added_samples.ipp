@@ -86,10 +86,17 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   ++of_layout.samples;
   residuals_ += added.residuals;
   samples_.push_back(std::move(added));
+  if (own_poses_.empty()) return;
+  std::vector<Pose<double>>& poses = poses_of_samples_.emplace_back();
+  for (const std::string& joint : own_poses_) {
+    const auto pose = sample.poses.find(joint);
+    poses.push_back(pose == sample.poses.end() ? Pose<double>{} : pose->second);
+  }
 }
 
 KINECAL_INLINE void AnyProblem::exclude(const std::set<int>& samples) {
   std::vector<AddedSample> kept;
+  std::vector<std::vector<Pose<double>>> poses;
   std::vector<int> numbers;  // the new one of each sample
   for (int i = 0; i < num_samples(); ++i) {
     const bool stays = !samples.contains(i);
@@ -97,11 +104,13 @@ KINECAL_INLINE void AnyProblem::exclude(const std::set<int>& samples) {
     AddedSample& sample = samples_[static_cast<std::size_t>(i)];
     if (stays) {
       kept.push_back(std::move(sample));
+      if (!own_poses_.empty()) poses.push_back(poses_of_samples_[static_cast<std::size_t>(i)]);
     } else {
       residuals_ -= sample.residuals;
     }
   }
   samples_ = std::move(kept);
+  poses_of_samples_ = std::move(poses);
   const std::vector<int> left = renumber_in_batches(numbers);
   for (auto& [layout, of_layout] : layouts_) of_layout.samples = left[of_layout.index];
 }

@@ -36,6 +36,14 @@ class AnyProblem {
   AnyProblem(Robot robot, std::string base, ParameterTable table, std::set<std::string> frames);
   virtual ~AnyProblem() = default;
 
+  /// Gives each sample poses of its own of floating joints, which are fitted and not measured: a board that a
+  /// person holds.  They are eliminated in the evaluation (evaluation/own_poses.hpp); Sample::poses says where they
+  /// start.
+  /// @param joints  names of floating joints that are free frames; none of their parameters may be free
+  /// @throws std::invalid_argument  if one is no floating joint and free frame
+  /// @throws std::logic_error       if samples have been added already
+  void give_own_poses(std::vector<std::string> joints);
+
   /// Adds a sensor of a built-in type.
   /// @throws RobotError        if no chain leads from the base to the sensor
   /// @throws std::logic_error  if samples have been added already
@@ -75,6 +83,17 @@ class AnyProblem {
   [[nodiscard]] const std::string& base() const { return base_; }
   /// Names of the free frames: joints of the robot or virtual frames.
   [[nodiscard]] const std::set<std::string>& frames() const { return frames_; }
+  /// Floating joints of which each sample has a pose of its own: see give_own_poses().
+  [[nodiscard]] const std::vector<std::string>& own_poses() const { return own_poses_; }
+  /// The poses that samples have of their own, by sample and joint: where they start.
+  [[nodiscard]] const std::vector<std::vector<Pose<double>>>& poses_of_samples() const {
+    return poses_of_samples_;
+  }
+  /// Sets where these poses start.
+  /// @param poses  by sample and joint
+  void set_poses_of_samples(std::vector<std::vector<Pose<double>>> poses) {
+    poses_of_samples_ = std::move(poses);
+  }
   /// All parameters with their initial values and bounds.
   [[nodiscard]] const ParameterTable& table() const { return table_; }
   /// The sensors in the order in which they were added.
@@ -171,6 +190,8 @@ class AnyProblem {
   ParameterTable table_;
   std::set<std::string> frames_;
   std::vector<std::string> owners_;  ///< of each parameter
+  std::vector<std::string> own_poses_;
+  std::vector<std::vector<Pose<double>>> poses_of_samples_;  ///< by sample and joint
   std::vector<MountedSensor> sensors_;
   std::vector<Term> terms_;
   std::vector<PriorTerm> priors_;

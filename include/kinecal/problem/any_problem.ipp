@@ -31,9 +31,21 @@ KINECAL_INLINE AnyProblem::AnyProblem(const AnyProblem& other, WithoutSamples)
       table_(other.table_),
       frames_(other.frames_),
       owners_(other.owners_),
+      own_poses_(other.own_poses_),
       sensors_(other.sensors_),
       terms_(other.terms_),
       priors_(other.priors_) {}
+
+KINECAL_INLINE void AnyProblem::give_own_poses(std::vector<std::string> joints) {
+  check_no_samples();
+  for (const std::string& joint : joints) {
+    const bool floats = robot_.has_joint(joint) && robot_.joint(joint).type == JointType::floating;
+    if (floats && frames_.contains(joint)) continue;
+    throw std::invalid_argument("'" + joint + "' cannot have a pose in each sample: it is no " +
+                                (floats ? "free frame" : "floating joint"));
+  }
+  own_poses_ = std::move(joints);
+}
 
 KINECAL_INLINE void AnyProblem::set_sigma(int term, double sigma) {
   if (!(sigma > 0.0) || !std::isfinite(sigma)) {

@@ -117,6 +117,18 @@ class Batches {
     return kept;
   }
 
+  /// Changes a number of a sample.
+  /// @param row     of the sample, in the order in which they were added
+  /// @param offset  of the number
+  void set(std::size_t row, std::size_t offset, double number) {
+    S* const batch = numbers_.data() + row / kLanes<S> * layout_.size;
+    const bool alone = row % kLanes<S> == 0 && row + 1 == samples_.size();
+    if (alone) batch[offset] = S(number);  // lanes without a sample repeat it
+    set_lane(batch[offset], static_cast<int>(row % kLanes<S>), number);
+  }
+  /// Index in the problem of the sample of a row.
+  [[nodiscard]] int sample(std::size_t row) const { return samples_[row]; }
+
   /// Number of samples.
   [[nodiscard]] int num_samples() const { return static_cast<int>(samples_.size()); }
   /// What the numbers of a batch are.

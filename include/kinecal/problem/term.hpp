@@ -47,6 +47,8 @@ struct TermResiduals {
   Eigen::VectorXd factor;    ///< of each residual, times the weight: the block's sigma over the
                              ///< feature's own; one for a feature without its own
   Eigen::MatrixXd jacobian;  ///< (residuals x free parameters); empty if not asked for
+  /// Share of each residual's variance that poses of the sample's own use up; empty: it has none.
+  Eigen::VectorXd used = {};
 
   /// Sets the residual (rows) to zero, and the Jacobian (rows x columns); columns < 0: no Jacobian.
   /// Factors are one.

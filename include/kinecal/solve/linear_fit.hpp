@@ -47,6 +47,7 @@ struct LinearFit {
   Eigen::VectorXd residual;        ///< (rows) without losses
   RowMajor jacobian;               ///< (rows x coordinates) derivatives; empty if not requested
   Eigen::VectorXd loss;            ///< (rows) rho' of the feature: 1 without a loss
+  Eigen::VectorXd used;            ///< (rows) TermResiduals::used: 0 without poses of samples
   Coordinates coordinates;         ///< the variables of the derivatives
   Eigen::VectorXd prior_gradient;  ///< (coordinates) of all priors
   Eigen::MatrixXd prior_hessian;   ///< (coordinates x coordinates) of all priors

@@ -68,6 +68,7 @@ KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues val
   for (const RowBlock& block : fit.blocks) rows += block.size;
   fit.residual.resize(rows);
   fit.loss.resize(rows);
+  fit.used.setZero(rows);
   fit.jacobian.resize(derivatives ? rows : 0, derivatives ? basis.cols() : 0);
   Eigen::Index first = 0;
   for (RowBlock& block : fit.blocks) {
@@ -75,6 +76,7 @@ KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues val
     const Term& term = evaluator.problem().term(block.term);
     detail::weigh(term, from, fit.residual.segment(first, block.size),
                   fit.loss.segment(first, block.size));
+    if (from.used.size() > 0) fit.used.segment(first, block.size) = from.used;
     if (derivatives) {
       const Eigen::VectorXd weights = term.weight * from.factor;
       fit.jacobian.middleRows(first, block.size).noalias() =

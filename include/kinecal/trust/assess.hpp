@@ -54,6 +54,7 @@ struct Assessment {
   std::optional<PoseUncertainty> pose;     ///< of the frames that the first error block compares
   double elsewhere = 0.0;  ///< +- of that position over the limits of the joints, median, metres
   std::int64_t rows = 0;   ///< residuals, without priors
+  double used = 0.0;       ///< of these, by poses that samples have of their own
   double readings = 1.0;   ///< samples per pose: see pose_groups()
   bool one_pose = false;   ///< all samples are of one pose of the robot
   Neighbours neighbours;   ///< whether consecutive poses err alike

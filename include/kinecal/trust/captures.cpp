@@ -75,7 +75,7 @@ class CaptureSearch {
   }
   /// The share of rows that parameters do not use up; readings of a pose count once.
   [[nodiscard]] double freedom(double rows) const {
-    const double n = static_cast<double>(fit_.size()) * poses_.readings();
+    const double n = static_cast<double>(fit_.size()) * poses_.readings() + fit_.used.sum();
     return rows > 2.0 * n ? 1.0 - n / rows : 0.5;
   }
   void solve(const Eigen::VectorXd& weights) {
@@ -120,8 +120,10 @@ class CaptureSearch {
   [[nodiscard]] double times(const FeatureRows& f) const {
     const auto j = fit_.jacobian.middleRows(f.row, f.size);
     const double leverage = std::min(0.99, (j * inverse_).cwiseProduct(j).sum() / f.size);
+    const double used = fit_.used.segment(f.row, f.size).mean();
     const bool in = !bad_[static_cast<std::size_t>(f.sample)];
-    return distance(f) / (sigma_of(f) * std::sqrt(in ? 1.0 - leverage : 1.0 + leverage));
+    const double variance = 1.0 - used + (in ? -leverage : leverage);
+    return distance(f) / (sigma_of(f) * std::sqrt(std::max(0.01, variance)));
   }
   /// Equal noise in all directions, or the tail of the features that fit, once bad ones are out.
   enum class Tail { normal, as_seen };

@@ -20,11 +20,13 @@ struct SquaredDistances {
   explicit SquaredDistances(const AnyProblem& problem)
       : sum(static_cast<std::size_t>(problem.num_terms()), 0.0), features(sum.size(), 0) {}
 
-  void add(const AnyProblem& problem, const Eigen::VectorXd& residual, const RowBlock& block) {
+  /// @param left  share of the rows that poses of the sample's own do not use up
+  void add(const AnyProblem& problem, const Eigen::VectorXd& residual, const RowBlock& block,
+           double left) {
     const Term& term = problem.term(block.term);
     const double unit = 1.0 / term.weight;
     const auto t = static_cast<std::size_t>(block.term);
-    sum[t] += unit * unit * residual.segment(block.first, block.size).squaredNorm();
+    sum[t] += unit * unit * residual.segment(block.first, block.size).squaredNorm() / left;
     features[t] += static_cast<int>(block.size) / term.feature_size;
   }
 };
@@ -66,7 +68,11 @@ std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator, ParameterValu
     return fold[static_cast<std::size_t>(block.sample)] == k;
   };
   detail::SquaredDistances fitted(problem), held_out(problem);
-  for (const RowBlock& block : fit.blocks) fitted.add(problem, fit.residual, block);
+  for (const RowBlock& block : fit.blocks) fitted.add(problem, fit.residual, block, 1.0);
+  // A sample that is held out has poses of its own, fitted to all of its features: what is left of these is compared.
+  const auto left_of = [&](const RowBlock& block) {
+    return std::max(0.1, 1.0 - fit.used.segment(block.first, block.size).mean());
+  };
   for (int k = 0; k < folds; ++k) {
     Eigen::VectorXd weights = fit.loss;
     for (const RowBlock& block : fit.blocks) {
@@ -76,7 +82,7 @@ std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator, ParameterValu
     const double priors = static_cast<double>(kept) / static_cast<double>(fold.size());
     const Refit without = refit(evaluator, values, fit, weights, priors);
     for (const RowBlock& block : fit.blocks) {
-      if (in(block, k)) held_out.add(problem, without.residual, block);
+      if (in(block, k)) held_out.add(problem, without.residual, block, left_of(block));
     }
     if (meter) meter((k + 1.0) / folds, "fitting without each fold");
   }

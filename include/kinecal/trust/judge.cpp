@@ -28,7 +28,7 @@ void judge_determined(const Assessment& step, bool last, Judgement& judgement) {
 
 void judge_freedom(const Assessment& step, Judgement& judgement) {
   const double parameters = std::max(1, step.uncertainty.determined);
-  const double freedom = static_cast<double>(step.rows) / step.readings - parameters;
+  const double freedom = (static_cast<double>(step.rows) - step.used) / step.readings - parameters;
   if (freedom >= parameters) return;
   judgement.wants_samples = true;
   judgement.add(freedom < 0.5 * parameters ? Grade::do_not_use : Grade::use_with_care,

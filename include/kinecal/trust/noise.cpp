@@ -91,7 +91,7 @@ std::vector<BlockNoise> estimate_noise(const AnyProblem& problem, const LinearFi
     const auto r = fit.residual.segment(block.first, block.size);
     const Eigen::VectorXd leverage =
         (jacobian * inverse).cwiseProduct(jacobian).rowwise().sum().cwiseProduct(loss);
-    leverages[t] += leverage.sum();
+    leverages[t] += leverage.sum() + fit.used.segment(block.first, block.size).sum();
     squares[t] += r.cwiseAbs2().dot(loss);
     for (Eigen::Index row = 0; row < block.size; row += size) {
       distances[t].push_back(r.segment(row, size).norm());

@@ -1,0 +1,284 @@
+// Definitions of own_poses.hpp, for a scalar S.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "kinecal/evaluation/own_poses.hpp"
+#include "kinecal/kinematics/floating_joint.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// Table indices of the parameters of the poses that samples have of their own: six of each frame.
+[[nodiscard]] inline FreeSet own_pose_parameters(const AnyProblem& problem) {
+  std::vector<int> all;
+  for (const std::string& frame : problem.own_poses()) {
+    for (const auto axis : kFrameAxes) {
+      all.push_back(problem.table().find(parameter_name(frame, axis)));
+    }
+  }
+  return {std::move(all), problem.table().size()};
+}
+
+/// The columns of two sets.
+[[nodiscard]] inline FreeSet joined(const FreeSet& first, const FreeSet& second) {
+  std::vector<int> all = first.parameters();
+  all.insert(all.end(), second.parameters().begin(), second.parameters().end());
+  return {std::move(all), first.table_size()};
+}
+
+/// Where the numbers of the poses stand in the rows of a layout.
+[[nodiscard]] inline std::vector<PosePlace> pose_places(const AnyProblem& problem,
+                                                        const SampleLayout& layout) {
+  std::vector<PosePlace> places;
+  for (std::size_t s = 0; s < layout.sensors.size(); ++s) {
+    if (!layout.sensors[s]) continue;
+    const std::vector<SampledChain>& chains = problem.sensors()[s].chains();
+    for (std::size_t c = 0; c < chains.size(); ++c) {
+      const std::size_t first = layout.sensors[s]->joints[c];
+      if (first == kAbsent) continue;
+      const std::size_t stride = 2 + most_effects(chains[c].parameters());
+      const std::vector<ChainJoint>& joints = chains[c].chain().joints;
+      for (std::size_t f = 0; f < problem.own_poses().size(); ++f) {
+        PosePlace place{f, {}};
+        bool found = false;
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+          if (joints[j].floating != problem.own_poses()[f]) continue;
+          place.offsets[floating_coordinate(joints[j].name)->index] = first + stride * j;
+          found = true;
+        }
+        if (found) places.push_back(place);
+      }
+    }
+  }
+  return places;
+}
+
+/// A pose after a step.
+/// @param step  (6) translation and rotation vector, in the moved frame
+[[nodiscard]] inline Pose<double> moved(const Pose<double>& pose, const Eigen::VectorXd& step) {
+  return pose * Pose<double>{exp(Vector3<double>(step.tail<3>())), step.head<3>()};
+}
+
+/// Lengths of the columns of a Jacobian by its J^T J; one for a column of zeros.
+[[nodiscard]] inline Eigen::VectorXd column_lengths(const Eigen::MatrixXd& hessian) {
+  return hessian.diagonal().unaryExpr([](double h) { return h > 0.0 ? std::sqrt(h) : 1.0; });
+}
+
+/// The pseudo-inverse of a (k x k) J^T J: directions without curvature stay out.
+[[nodiscard]] inline Eigen::MatrixXd inverse_where_determined(const Eigen::MatrixXd& hessian) {
+  const Eigen::VectorXd per_length = column_lengths(hessian).cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(per_length.asDiagonal() * hessian *
+                                                             per_length.asDiagonal());
+  constexpr double kNoCurvature = 1e-12;  // of unit columns
+  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr(
+      [](double value) { return value > kNoCurvature ? 1.0 / value : 0.0; });
+  return per_length.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
+         eigen.eigenvectors().transpose() * per_length.asDiagonal();
+}
+
+inline Eigen::VectorXd OwnPoseSums::step(double damping) const {
+  const Eigen::VectorXd per_length = column_lengths(hessian).cwiseInverse();
+  Eigen::MatrixXd scaled = per_length.asDiagonal() * hessian * per_length.asDiagonal();
+  constexpr double kNoCurvature = 1e-12;  // of unit columns
+  scaled.diagonal().array() += damping + kNoCurvature;
+  return per_length.cwiseProduct(
+      scaled.ldlt().solve(-per_length.cwiseProduct(gradient)));
+}
+
+}  // namespace detail
+
+template <class S>
+OwnPosesEvaluator<S>::OwnPosesEvaluator(const BasicProblem<S>& problem, const FreeSet& free)
+    : problem_(problem),
+      free_(free),
+      own_(detail::own_pose_parameters(problem)),
+      all_(detail::joined(free, own_)),
+      batches_(problem.batches()),
+      now_(problem.poses_of_samples()),
+      best_(now_) {
+  places_.resize(now_.size());
+  for (std::size_t l = 0; l < batches_.size(); ++l) {
+    offsets_.push_back(detail::pose_places(problem, batches_[l].layout()));
+    for (std::size_t row = 0; row < static_cast<std::size_t>(batches_[l].num_samples()); ++row) {
+      places_[static_cast<std::size_t>(batches_[l].sample(row))] = {l, row};
+    }
+  }
+  by_own_ = std::make_unique<Evaluator<S>>(problem, batches_, own_);
+  by_all_ = std::make_unique<Evaluator<S>>(problem, batches_, all_);
+}
+
+template <class S>
+void OwnPosesEvaluator<S>::place(std::size_t sample) {
+  const Place& place = places_[sample];
+  for (const detail::PosePlace& of : offsets_[place.layout]) {
+    const std::array<double, 6> at = floating_positions(now_[sample][of.frame]);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const bool turns = i >= 3;  // the numbers of JointStates
+      batches_[place.layout].set(place.row, of.offsets[i], turns ? std::cos(at[i]) : at[i]);
+      batches_[place.layout].set(place.row, of.offsets[i] + 1, turns ? std::sin(at[i]) : 0.0);
+    }
+  }
+}
+
+template <class S>
+Eigen::VectorXd OwnPosesEvaluator<S>::squared_weights(int t, const TermResiduals& rows,
+                                                      Losses losses, double& cost) const {
+  const Term& term = problem_.term(t);
+  const Loss loss = term.options.loss_for(losses);
+  Eigen::VectorXd weights = term.weight * rows.factor;
+  const int size = term.feature_size;
+  for (Eigen::Index row = 0; row < weights.size(); row += size) {
+    const auto value = loss(
+        weights.segment(row, size).cwiseProduct(rows.residual.segment(row, size)).squaredNorm());
+    cost += 0.5 * value.rho;
+    weights.segment(row, size) =
+        value.derivative * weights.segment(row, size).cwiseAbs2().eval();
+  }
+  return weights;
+}
+
+template <class S>
+std::vector<detail::OwnPoseSums> OwnPosesEvaluator<S>::sums(ParameterValues values,
+                                                            Losses losses) {
+  std::vector<detail::OwnPoseSums> all(now_.size(), detail::OwnPoseSums(own_.size()));
+  (void)by_own_->evaluate(values, true, [&](int t, int sample, const TermResiduals& rows) {
+    detail::OwnPoseSums& of = all[static_cast<std::size_t>(sample)];
+    const Eigen::VectorXd w2 = squared_weights(t, rows, losses, of.cost);
+    const Eigen::MatrixXd weighted = w2.asDiagonal() * rows.jacobian;
+    of.hessian.noalias() += rows.jacobian.transpose() * weighted;
+    of.gradient.noalias() += weighted.transpose() * rows.residual;
+    of.rows += rows.residual.size();
+  });
+  return all;
+}
+
+template <class S>
+void OwnPosesEvaluator<S>::fit(ParameterValues values, Losses losses) {
+  now_ = best_;
+  for (std::size_t s = 0; s < now_.size(); ++s) place(s);
+  std::vector<detail::OwnPoseSums> at = sums(values, losses);
+  std::vector<double> damping(now_.size(), 0.0);
+  std::vector<bool> moves(now_.size(), true);
+  constexpr int kMostSteps = 50;
+  constexpr double kSettled = 1e-13, kFirstDamping = 1e-3, kMostDamping = 1e8;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Poses before = now_;
+    for (std::size_t s = 0; s < now_.size(); ++s) {
+      if (!moves[s]) continue;
+      const Eigen::VectorXd change = at[s].step(damping[s]);
+      moves[s] = -at[s].gradient.dot(change) > kSettled * at[s].cost;
+      if (!moves[s]) continue;
+      for (std::size_t f = 0; f < now_[s].size(); ++f) {
+        now_[s][f] = detail::moved(now_[s][f], change.segment(6 * static_cast<Eigen::Index>(f), 6));
+      }
+      place(s);
+    }
+    if (std::find(moves.begin(), moves.end(), true) == moves.end()) return;
+    std::vector<detail::OwnPoseSums> there = sums(values, losses);
+    for (std::size_t s = 0; s < now_.size(); ++s) {
+      if (!moves[s]) continue;
+      if (there[s].rows == at[s].rows && there[s].cost <= at[s].cost) {
+        at[s] = std::move(there[s]);
+        damping[s] *= damping[s] > kFirstDamping ? 0.1 : 0.0;
+        continue;
+      }
+      now_[s] = before[s];
+      place(s);
+      damping[s] = std::max(kFirstDamping, 10.0 * damping[s]);
+      moves[s] = damping[s] < kMostDamping;
+    }
+  }
+}
+
+template <class S>
+std::optional<UndefinedResidual> OwnPosesEvaluator<S>::collect(ParameterValues values,
+                                                               Losses losses, Linearization at) {
+  fit(values, losses);
+  rows_.clear();
+  const auto undefined =
+      by_all_->evaluate(values, true, [&](int t, int sample, const TermResiduals& rows) {
+        rows_.push_back({t, sample, rows});
+      }, at);
+  const Eigen::Index free = free_.size(), own = own_.size();
+  std::vector<Eigen::MatrixXd> by_own(now_.size(), Eigen::MatrixXd::Zero(own, own)),
+      by_both(now_.size(), Eigen::MatrixXd::Zero(own, free));
+  for (const Rows& of : rows_) {
+    double cost = 0.0;
+    const auto poses = of.residuals.jacobian.rightCols(own);
+    const Eigen::MatrixXd weighted =
+        squared_weights(of.term, of.residuals, losses, cost).asDiagonal() * poses;
+    const auto s = static_cast<std::size_t>(of.sample);
+    by_own[s].noalias() += weighted.transpose() * poses;
+    by_both[s].noalias() += weighted.transpose() * of.residuals.jacobian.leftCols(free);
+  }
+  for (std::size_t s = 0; s < now_.size(); ++s) {
+    by_own[s] = detail::inverse_where_determined(by_own[s]);
+    by_both[s] = by_own[s] * by_both[s];
+  }
+  for (Rows& of : rows_) {
+    const auto s = static_cast<std::size_t>(of.sample);
+    const Eigen::MatrixXd jacobian = std::move(of.residuals.jacobian);
+    const auto poses = jacobian.rightCols(own);
+    double cost = 0.0;
+    of.residuals.used = (poses * by_own[s])
+                            .cwiseProduct(poses)
+                            .rowwise()
+                            .sum()
+                            .cwiseProduct(squared_weights(of.term, of.residuals, losses, cost));
+    of.residuals.jacobian = jacobian.leftCols(free) - poses * by_both[s];
+  }
+  return undefined;
+}
+
+template <class S>
+std::optional<UndefinedResidual> OwnPosesEvaluator<S>::evaluate(ParameterValues values,
+                                                                bool derivatives,
+                                                                const RowVisitor& visit,
+                                                                Linearization at) {
+  const auto undefined = collect(values, Losses::as_given, at);
+  for (Rows& of : rows_) {
+    if (!derivatives) of.residuals.jacobian.resize(0, 0);
+    visit(of.term, of.sample, of.residuals);
+  }
+  return undefined;
+}
+
+template <class S>
+NormalEquations OwnPosesEvaluator<S>::normal_equations(ParameterValues values, bool derivatives,
+                                                       Losses losses) {
+  NormalEquations total(derivatives ? free_.size() : 0);
+  const auto undefined = collect(values, losses, Linearization::measured);
+  for (const Rows& of : rows_) {
+    const Eigen::VectorXd w2 = squared_weights(of.term, of.residuals, losses, total.cost);
+    if (!derivatives) continue;
+    const Eigen::MatrixXd weighted = w2.asDiagonal() * of.residuals.jacobian;
+    total.gradient.noalias() += weighted.transpose() * of.residuals.residual;
+    total.hessian.noalias() += weighted.transpose() * of.residuals.jacobian;
+  }
+  if (undefined) total.cost = std::numeric_limits<double>::quiet_NaN();
+  if (total.cost <= best_cost_) {
+    best_cost_ = total.cost;
+    best_ = now_;
+  }
+  TermResiduals of_prior;
+  for (const PriorTerm& prior : problem_.priors()) {
+    prior.evaluate(problem_.table(), values, derivatives ? &free_ : nullptr, of_prior);
+    total.add_prior(prior, of_prior, problem_.num_samples(), losses);
+  }
+  return total;
+}
+
+template <class S>
+std::vector<std::vector<Pose<double>>> OwnPosesEvaluator<S>::fitted(ParameterValues values) {
+  fit(values, Losses::as_given);
+  return now_;
+}
+
+}  // namespace kinecal

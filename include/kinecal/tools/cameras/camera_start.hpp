@@ -1,0 +1,50 @@
+// What the views of a flat target say of a camera before anything is known of it: the focal length, whether it is
+// rather a pinhole or a fisheye, and where the target was.
+//
+// For each focal length of a grid, as a pinhole and as a fisheye, directions of the corners follow from their pixels, with
+// the principal point in the middle of the image; from these, by a homography, the pose of the target; and from that, how
+// far the corners are off.  The one with the smallest median is refined.  So nothing has to be guessed, and no view decides
+// alone.
+// Source: Zhang, A Flexible New Technique for Camera Calibration, 2000 (poses from homographies).
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "kinecal/geometry/pose.hpp"
+#include "kinecal/tools/cameras/lens_start.hpp"
+
+namespace kinecal {
+
+/// A view of a flat target: its corners, in the same order.
+struct TargetView {
+  std::vector<Eigen::Vector2d> plane;   ///< (2) each, metres, on the target
+  std::vector<Eigen::Vector2d> pixels;  ///< (2) each
+};
+
+/// A camera of which little is known.
+struct CameraStart {
+  RoundLens lens;             ///< rough
+  Eigen::Vector2d center;     ///< (2) principal point, pixels
+  double most_degrees = 0.0;  ///< angle of the farthest corner from the axis
+  double typical = 0.0;       ///< median distance of corners, pixels
+
+  /// The direction of a pixel.
+  /// @returns  (3) unit vector in the optical frame; not a number outside of the image of the lens
+  [[nodiscard]] Vector3<double> direction(const Eigen::Vector2d& pixel) const;
+  /// The pixel of a point (3).
+  [[nodiscard]] Eigen::Vector2d pixel(const Vector3<double>& point) const;
+  /// camera_T_target of a view; nullopt if its corners do not determine it.
+  [[nodiscard]] std::optional<Pose<double>> pose(const TargetView& view) const;
+};
+
+/// Finds a camera by its views.
+/// @param width, height  of the image, pixels
+/// @returns  nullopt if no view has four corners that are not on a line
+[[nodiscard]] std::optional<CameraStart> camera_start(std::span<const TargetView> views,
+                                                      double width, double height);
+
+}  // namespace kinecal
