@@ -404,6 +404,10 @@ std::string joint_zeros_text(const Robot& robot, const std::string& urdf_text,
 }  // namespace
 
 int init(const InitOptions& options) {
+  if (!options.poses.empty()) return init_hand_eye(options);
+  if (options.urdf.empty()) {
+    throw InputError("give the robot: --urdf, or the poses of its flange: --poses");
+  }
   const auto check = [&] { check_output(options.output, {options.urdf}, options.force); };
   check();  // before any question
   if (!options.capture.empty()) {

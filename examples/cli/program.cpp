@@ -256,7 +256,37 @@ void add_identify(CLI::App& command, IdentifyOptions& options) {
 }
 
 void add_init(CLI::App& command, InitOptions& options) {
-  command.add_option("--urdf", options.urdf, "the robot's URDF")->required()->type_name("FILE");
+  CLI::Option* urdf =
+      command.add_option("--urdf", options.urdf, "the robot's URDF")->type_name("FILE");
+  CLI::Option* poses =
+      command
+          .add_option(
+              "--poses", options.poses,
+              "instead of a URDF: a table of the flange's poses, for a hand-eye calibration; "
+              "writes hand_eye.urdf and columns.yaml, too.  --target says where the camera "
+              "is: world_... on the hand, else beside the robot")
+          ->excludes(urdf)
+          ->type_name("FILE");
+  command
+      .add_option("--form", options.form,
+                  "what the columns of --poses are: quaternion_xyzw, quaternion_wxyz, "
+                  "rotation_vector, rpy, matrix, ur, abb, kuka, fanuc, fixed_xyz, euler_zyx, ...; "
+                  "default: by their names")
+      ->needs(poses)
+      ->type_name("FORM");
+  command.add_flag("--inverse", options.inverse, "--poses has the poses of the base in the flange")
+      ->needs(poses);
+  CLI::Option* corners =
+      command
+          .add_option("--corners", options.corners,
+                      "a table of the corners seen (image, id, u, v), instead of photographs")
+          ->needs(poses)
+          ->type_name("FILE");
+  corners->needs(command
+                     .add_option("--target-points", options.target_points,
+                                 "a table of where these corners are on the board (id, x, y, z)")
+                     ->needs(corners)
+                     ->type_name("FILE"));
   command.add_option("--output", options.output, "the configuration to write")
       ->type_name("FILE")
       ->capture_default_str();

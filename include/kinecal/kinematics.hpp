@@ -6,6 +6,7 @@
 #include "kinecal/kinematics/chain_checks.hpp"
 #include "kinecal/kinematics/chain_fold.hpp"
 #include "kinecal/kinematics/corrections.hpp"
+#include "kinecal/kinematics/floating_joint.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/kinematics/gravity_load.hpp"
 #include "kinecal/kinematics/joint.hpp"

@@ -208,7 +208,7 @@ constexpr LongSource kLongSources[] = {
     {"files/bags/mcap/messages.ipp", "one reader: records, chunks and index of a file"},
     {"files/bags/mcap/write_mcap.cpp", "one writer: records, chunks, index and summary of a file"},
     {"files/bags/ros1/read_bag.cpp", "one reader: records, chunks and index of a bag"},
-    {"files/csv/read_csv_samples.cpp", "from rows to samples, with a message for each mistake"},
+    {"files/csv/csv_samples.ipp", "from rows to samples, with a message for each mistake"},
     {"files/messages/definition.cpp", "the grammar of .msg files and its parser"},
     {"files/samples/sample_schema.ipp", "one table: every key of a sample"},
     {"files/yaml/config_map.ipp", "one class: a map of a configuration, its types and its errors"},

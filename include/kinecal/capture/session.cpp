@@ -88,6 +88,7 @@ std::vector<Sample> samples_of(const MeasuredJoints& joints,
       sample.joint_names = joints.names;
       sample.joint_positions = joints.positions;
       sample.joint_velocities = joints.velocities;
+      sample.poses = joints.poses;
       sample.stamp = joints.stamp;
       to = samples.insert(samples.end(), std::move(sample));
     }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ struct MeasuredJoints {
   std::vector<std::string> names;       ///< of joints
   std::vector<double> positions;        ///< radians or metres, in the order of the names
   std::vector<double> velocities = {};  ///< rad/s or m/s, in the same order; empty: unknown
+  std::map<std::string, Pose<double>> poses = {};  ///< measured ones, of floating joints
 
   /// Position of a joint, radians or metres; nullopt if it was not measured.
   [[nodiscard]] std::optional<double> position(const std::string& joint) const {

@@ -123,7 +123,15 @@ inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
                         const std::set<std::string>& recorded, bool have_samples,
                         Diagnostics& diagnostics) {
   if (frame.is_fixed) return check_fixed_frame(frame, robot, recorded, have_samples, diagnostics);
-  if (robot.has_joint(frame.name)) return;
+  if (robot.has_joint(frame.name)) {
+    if (robot.joint(frame.name).type != JointType::floating) return;
+    diagnostics.error(frame.place,
+                      fmt::format("free frame '{0}' is a floating joint: its pose is measured in "
+                                  "each sample, so the URDF cannot hold a correction of it; free "
+                                  "the frame of a fixed joint before or after '{0}'",
+                                  frame.name));
+    return;
+  }
   if (robot.has_link(frame.name)) {
     const Joint* joint = robot.parent_joint(frame.name);
     diagnostics.error(frame.place,

@@ -48,7 +48,8 @@ struct ConstantPose : Pose<double> {
   return -1;
 }
 
-/// One joint of a chain, as the walk needs it.
+/// One joint of a chain, as the walk needs it.  A floating joint is six of them (floating_joint.hpp),
+/// and a fixed one with its correction.
 struct ChainJoint {
   std::string name;                   ///< of the joint, or of a virtual frame
   JointType type = JointType::fixed;  ///< fixed only if it is corrected
@@ -58,7 +59,13 @@ struct ChainJoint {
   bool reversed = false;                ///< passed from child to parent
   Mimic drive;  ///< the joint whose measured position moves this one: itself, unless it mimics
   int principal = principal_axis(axis);  ///< about a principal axis, only two columns rotate
+  std::string floating = {};  ///< the floating joint that this is a coordinate of; empty: none
 };
+
+/// True for a joint with a position of its own: it moves, and is no coordinate of a measured pose.
+[[nodiscard]] inline bool has_position(const ChainJoint& joint) {
+  return moves(joint.type) && joint.floating.empty();
+}
 
 /// A chain that is built at run time: see make_chain().
 struct RuntimeChain {
@@ -75,7 +82,7 @@ struct RuntimeChain {
 /// The chain from `base` to `tip`, any two links of the robot.
 /// @param corrected  names of the joints with a frame correction; fixed ones among them are kept
 /// @throws RobotError  if a link does not exist (with the nearest name), if the two links are not
-///                     connected, or if a joint between them is floating or planar
+///                     connected, or if a joint between them is planar
 [[nodiscard]] RuntimeChain make_chain(const Robot& robot, const std::string& base,
                                       const std::string& tip,
                                       const std::set<std::string>& corrected = {});

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/chain_fold.hpp"
+#include "kinecal/kinematics/floating_joint.hpp"
 #include "kinecal/text/frame_name.hpp"
 
 namespace kinecal {
@@ -18,6 +21,26 @@ namespace detail {
     if (same_frame(joint.parent, name)) return joint.parent;  // the root
   }
   return name;
+}
+
+/// Adds a floating joint to a chain: its coordinates, and a fixed joint with its correction.
+inline void add_floating(const Joint& joint, const Pose<double>& fixed, bool corrected,
+                         bool reversed, RuntimeChain& chain) {
+  std::vector<ChainJoint> parts;
+  for (std::size_t i = 0; i < kFloatingCoordinates.size(); ++i) {
+    const std::string name = floating_coordinate(joint.name, i);
+    const auto axis = static_cast<Eigen::Index>(i < 3 ? i : 5 - i);  // x y z, then z y x
+    parts.push_back({name, i < 3 ? JointType::prismatic : JointType::continuous, Pose<double>{},
+                     Vector3<double>::Unit(axis), false, reversed, Mimic{name, 1.0, 0.0}});
+    parts.back().floating = joint.name;
+  }
+  if (corrected) {
+    parts.push_back({joint.name, JointType::fixed, Pose<double>{}, joint.axis, true, reversed,
+                     Mimic{joint.name, 1.0, 0.0}});
+  }
+  if (reversed) std::reverse(parts.begin(), parts.end());
+  parts.front().fixed = fixed;
+  chain.joints.insert(chain.joints.end(), parts.begin(), parts.end());
 }
 
 }  // namespace detail
@@ -48,15 +71,19 @@ KINECAL_INLINE RuntimeChain make_chain(const Robot& robot, const std::string& ba
   }
   for (std::size_t n = 0; n < way.size; ++n) {
     const Joint& joint = joints[way.joints[n]];
-    if (detail::is_passable(joint.type)) continue;
+    if (joint.type == JointType::floating || detail::is_passable(joint.type)) continue;
     throw RobotError("joint '" + joint.name + "' between '" + base + "' and '" + tip + "' is " +
                      std::string(to_string(joint.type)) +
-                     "; chains take fixed, revolute, continuous and prismatic joints");
+                     "; chains take fixed, revolute, continuous, prismatic and floating joints");
   }
   RuntimeChain chain{from, to, {}, {}};
   chain.tail = detail::fold(
       joints, way, [&](const std::string& name) { return corrected.contains(name); },
       [&](const Joint& joint, const Pose<double>& fixed, bool is_corrected, bool reversed) {
+        if (joint.type == JointType::floating) {
+          detail::add_floating(joint, fixed, is_corrected, reversed, chain);
+          return;
+        }
         chain.joints.push_back({joint.name, joint.type, fixed, joint.axis, is_corrected, reversed,
                                 drive(robot, joint)});
       });

@@ -93,12 +93,12 @@ template <class Joints, class Indices>
   return way;
 }
 
-/// True if a chain can pass joints of this type.
+/// True if a chain can pass joints of this type as one joint.
 [[nodiscard]] constexpr bool is_passable(JointType type) {
   return type == JointType::fixed || moves(type);
 }
 
-/// Visits the joints of a path that move or are corrected; folds everything constant between them.
+/// Visits the joints of a path that move, float or are corrected; folds everything constant between them.
 /// @param is_corrected  callable: name of a joint -> whether it has a frame correction
 /// @param visit         callable (joint, constant transform before it, is_corrected, reversed)
 /// @returns             the constant transform after the last of them
@@ -111,7 +111,7 @@ template <class Joints, class Indices, class IsCorrected, class Visit>
     const bool reversed = n < way.up;
     if (!reversed) fixed = fixed * joint.origin;
     const bool corrected = is_corrected(joint.name);
-    if (corrected || moves(joint.type)) {
+    if (corrected || moves(joint.type) || joint.type == JointType::floating) {
       visit(joint, fixed, corrected, reversed);
       fixed = {};
     }

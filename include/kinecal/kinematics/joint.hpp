@@ -12,13 +12,13 @@
 
 namespace kinecal {
 
-/// Types of joints, as in a URDF; chains take all but floating and planar.
+/// Types of joints, as in a URDF; chains take all but planar.
 enum class JointType {
   fixed,       ///< does not move
   revolute,    ///< rotates about its axis, within limits
   continuous,  ///< rotates about its axis, without limits
   prismatic,   ///< slides along its axis
-  floating,    ///< moves freely
+  floating,    ///< moves freely; its pose is measured, see floating_joint.hpp
   planar       ///< moves in a plane
 };
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "kinecal/problem/mounted_sensor.hpp"
+#include "kinecal/problem/sample_reading.ipp"
 #include "kinecal/text/frame_name.hpp"
 
 namespace kinecal {
@@ -139,8 +140,8 @@ KINECAL_INLINE std::vector<double> MountedSensor::joints(const Sample& sample,
   for (const ChainJoint& joint : chain.chain().joints) {
     const std::string& name = joint.drive.joint;
     if (!moves(joint.type) || sample.position(name)) continue;
-    throw SampleError("joint '" + name + "' is not in the sample; sensor '" + mount_.name +
-                      "' needs it" + did_you_mean(name, sample.joint_names));
+    throw SampleError(
+        detail::missing_text(sample, name, "; sensor '" + mount_.name + "' needs it"));
   }
   const ModelledMotions motions = chain.motions(sample, SampledChain::Unknown::refused);
   std::vector<double> numbers;

@@ -15,16 +15,33 @@
 
 namespace kinecal::detail {
 
-/// The measured position of a joint.
+/// "joint 'elbow' is not in the sample", or that the pose of a floating joint is not, with the
+/// nearest name.
+/// @param joint  or a coordinate of a floating joint
+/// @param whose  follows the sentence: "; sensor 'camera' needs it"
+[[nodiscard]] inline std::string missing_text(const Sample& sample, const std::string& joint,
+                                              const std::string& whose = "") {
+  const std::optional<FloatingCoordinate> part = floating_coordinate(joint);
+  if (!part) {
+    return "joint '" + joint + "' is not in the sample" + whose +
+           did_you_mean(joint, sample.joint_names);
+  }
+  std::vector<std::string> names;
+  for (const auto& [name, pose] : sample.poses) names.push_back(name);
+  return "the pose of floating joint '" + part->joint + "' is not in the sample" + whose +
+         did_you_mean(part->joint, names);
+}
+
+/// The measured position of a joint, or of a coordinate of a floating joint.
 /// @throws SampleError  if it is missing or not a number
 [[nodiscard]] inline double position_in(const Sample& sample, const std::string& joint) {
   const std::optional<double> position = sample.position(joint);
-  if (!position) {
-    throw SampleError("joint '" + joint + "' is not in the sample" +
-                      did_you_mean(joint, sample.joint_names));
-  }
+  if (!position) throw SampleError(missing_text(sample, joint));
   if (!std::isfinite(*position)) {
-    throw SampleError("the position of joint '" + joint + "' is not a number");
+    const std::optional<FloatingCoordinate> part = floating_coordinate(joint);
+    throw SampleError(
+        (part ? "the pose of floating joint '" + part->joint : "the position of joint '" + joint) +
+        "' is not a number");
   }
   return *position;
 }

@@ -17,14 +17,15 @@ namespace kinecal {
 class SampledChain {
  public:
   /// @param lag  table index of the sensor's lag behind the joints' positions, seconds; -1: none
-  /// @throws RobotError  if the table has a parameter of a joint model that the joint cannot have
+  /// @throws RobotError  if the table has a parameter of a joint model that the joint cannot have, or
+  ///                     there is a lag behind a floating joint
   SampledChain(const Robot& robot, RuntimeChain chain, const ParameterTable& table, int lag = -1);
 
   /// The chain.
   [[nodiscard]] const RuntimeChain& chain() const { return chain_; }
   /// Table indices of its joints' parameters, by joint.
   [[nodiscard]] const std::vector<JointIndices>& parameters() const { return parameters_; }
-  /// True if a sample has the positions of all of its joints.
+  /// True if a sample has the positions of all of its joints, and the poses of floating ones.
   [[nodiscard]] bool has_joints(const Sample& sample) const;
 
   /// What is taken of velocities and directions that a sample does not have: an error, or those of a

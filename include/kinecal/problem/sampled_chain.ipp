@@ -34,6 +34,10 @@ KINECAL_INLINE SampledChain::SampledChain(const Robot& robot, RuntimeChain chain
   static const detail::JointModelOf<SensorLag> lag_model{SensorLag{}};
   for (std::size_t i = 0; lag >= 0 && i < chain_.joints.size(); ++i) {
     const ChainJoint& joint = chain_.joints[i];
+    if (!joint.floating.empty()) {
+      throw RobotError("a lag needs velocities, which the measured pose of floating joint '" +
+                       joint.floating + "' does not have");
+    }
     if (!moves(joint.type)) continue;
     add(i, lag, {{&lag_model, 0, joint.drive.joint, {}, {}, {}}, joint.drive.multiplier});
   }

@@ -81,13 +81,23 @@ template <class Items, class Write>
           {"undetermined", json_list(state.undetermined, combination)}};
 }
 
-/// Joint positions, to six digits.
+/// Joint positions and measured poses (x y z qx qy qz qw), to six digits.
 [[nodiscard]] inline Json json(const RecordedPoses& poses) {
   const auto number = [](double value) {
     return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
   };
   const auto row = [&](const auto& numbers) { return json_list(numbers, number); };
-  return {{"joints", poses.joints}, {"positions", json_list(poses.positions, row)}};
+  Json all = {{"joints", poses.joints}, {"positions", json_list(poses.positions, row)}};
+  if (poses.floating.empty()) return all;
+  const auto of_pose = [&](const Pose<double>& pose) {
+    const Eigen::Vector4d q = quaternion(pose.rotation).normalized();
+    const auto& t = pose.translation;
+    return row(std::vector<double>{t.x(), t.y(), t.z(), q(0), q(1), q(2), q(3)});
+  };
+  all["floating"] = poses.floating;
+  all["measured"] =
+      json_list(poses.measured, [&](const auto& of) { return json_list(of, of_pose); });
+  return all;
 }
 
 }  // namespace detail

@@ -14,9 +14,12 @@ namespace kinecal {
 struct RecordedPoses {
   std::vector<std::string> joints;             ///< of the chains of all sensors
   std::vector<std::vector<double>> positions;  ///< radians or metres, for each joint
+  std::vector<std::string> floating = {};      ///< floating joints of these chains
+  /// Of each sample, the measured poses of `floating`.
+  std::vector<std::vector<Pose<double>>> measured = {};
 };
 
-/// The poses of samples with all joints; an even selection if there are more than 100.
+/// The poses of samples with all joints and measured poses; an even selection if there are more than 100.
 [[nodiscard]] RecordedPoses recorded_poses(const Calibration& calibration,
                                            std::span<const Sample> samples);
 

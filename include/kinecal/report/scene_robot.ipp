@@ -66,7 +66,27 @@ class SceneRobot {
     return static_cast<int>(scene_.links.size()) - 1;
   }
 
+  /// A floating joint as its coordinates, with links between that have no names.
+  void add_floating(const Joint& joint) {
+    int parent = links_.at(joint.parent);
+    for (std::size_t i = 0; i < kFloatingCoordinates.size(); ++i) {
+      const bool slides = i < 3, is_last = i + 1 == kFloatingCoordinates.size();
+      SceneJoint shown{.name = joint.name,
+                       .type = slides ? JointType::prismatic : JointType::continuous,
+                       .parent = parent,
+                       .child = is_last ? links_.at(joint.child) : add_link(""),
+                       .origin = i == 0 ? joint.origin : Pose<double>()};
+      shown.axis = {};
+      shown.axis[slides ? i : 5 - i] = 1.0;
+      shown.drive = position_of(floating_coordinate(joint.name, i));
+      shown.is_virtual = true;  // nothing connects its links
+      parent = shown.child;
+      scene_.joints.push_back(std::move(shown));
+    }
+  }
+
   void add_joint(const Joint& joint) {
+    if (joint.type == JointType::floating) return add_floating(joint);
     SceneJoint shown{.name = joint.name,
                      .type = joint.type,
                      .parent = links_.at(joint.parent),

@@ -13,7 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/geometry/rotation.hpp"
+#include "kinecal/geometry/pose.hpp"
+#include "kinecal/kinematics/floating_joint.hpp"
 
 namespace kinecal {
 
@@ -85,10 +86,36 @@ struct Sample {
   /// How far each joint has come from where it stood before, radians or metres; 0 if it has not
   /// moved yet; empty: unknown.  See set_joint_moves().
   std::vector<double> joint_moves = {};
+  /// Measured poses of floating joints by name, such as that of a flange: parent_T_child without the
+  /// joint's origin, metres.  See kinematics/floating_joint.hpp.
+  std::map<std::string, Pose<double>> poses = {};
 
-  /// Measured position of a joint, radians or metres; nullopt if it was not measured.
+  /// Measured position of a joint, or of a coordinate of a floating joint, radians or metres; nullopt
+  /// if it was not measured.
   [[nodiscard]] std::optional<double> position(const std::string& joint) const {
-    return of(joint, joint_positions);
+    if (const std::optional<double> own = of(joint, joint_positions)) return own;
+    if (poses.empty()) return std::nullopt;
+    const std::optional<FloatingCoordinate> part = floating_coordinate(joint);
+    const auto pose = part ? poses.find(part->joint) : poses.end();
+    if (pose == poses.end()) return std::nullopt;
+    return floating_positions(pose->second)[part->index];
+  }
+  /// Adds to the measured position of a joint, or of a coordinate of a floating joint; nothing if it
+  /// was not measured.
+  /// @param change  radians or metres
+  void add_to_position(const std::string& joint, double change) {
+    bool known = false;
+    for (std::size_t i = 0; i < std::min(joint_names.size(), joint_positions.size()); ++i) {
+      if (joint_names[i] != joint) continue;
+      joint_positions[i] += change;
+      known = true;
+    }
+    const std::optional<FloatingCoordinate> part = floating_coordinate(joint);
+    const auto pose = known || !part ? poses.end() : poses.find(part->joint);
+    if (pose == poses.end()) return;
+    std::array<double, 6> at = floating_positions(pose->second);
+    at[part->index] += change;
+    pose->second = floating_pose(at);
   }
   /// Measured velocity of a joint, rad/s or m/s; nullopt if it was not measured.
   [[nodiscard]] std::optional<double> velocity(const std::string& joint) const {

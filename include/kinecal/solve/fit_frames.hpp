@@ -54,6 +54,11 @@ struct FittedFrames {
 [[nodiscard]] double turn_between(const UnknownFrame& frame, const Eigen::VectorXd& from,
                                   const Eigen::VectorXd& to);
 
+/// True if a frame, of those with or those without a guess, is turned by more than 30 degrees, the
+/// limit for a bracket that is mounted as drawn.
+[[nodiscard]] bool any_turned(std::span<const UnknownFrame> frames, bool has_guess,
+                              const Eigen::VectorXd& from, const Eigen::VectorXd& to);
+
 /// All fits from a grid.
 struct FrameFits {
   std::vector<FittedFrames> minima;  ///< distinct, lowest cost first

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <iterator>
+#include <numbers>
 
 #include "kinecal/evaluation/parallel.hpp"
 #include "kinecal/solve/frame_fit.ipp"
@@ -35,6 +37,14 @@ KINECAL_INLINE double turn_between(const UnknownFrame& frame, const Eigen::Vecto
   const Matrix3<double> turn =
       exp(rotation_of(frame, from)).transpose() * exp(rotation_of(frame, to));
   return log(turn).norm();
+}
+
+KINECAL_INLINE bool any_turned(std::span<const UnknownFrame> frames, bool has_guess,
+                               const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
+  constexpr double kLikely = std::numbers::pi / 6.0;
+  return std::any_of(frames.begin(), frames.end(), [&](const UnknownFrame& frame) {
+    return frame.has_guess == has_guess && turn_between(frame, from, to) > kLikely;
+  });
 }
 
 /// True if two fits ended at the same minimum.

@@ -2,7 +2,8 @@
 //
 // Frames of unknown pose are first fitted alone to a few samples, from a grid of orientations
 // (fit_frames.hpp).  The best few fits are then solved with everything free.  So is the configured
-// start, and its minimum is taken unless another is lower by more than rounding.  A frame with a
+// start, and its minimum is taken unless another is lower by more than rounding, or as low with a frame
+// that was searched for in another place.  A frame with a
 // pose in the URDF or configuration takes part only if the step otherwise ends badly: it does not
 // converge, or it rotates this frame by more than 30 degrees.
 //

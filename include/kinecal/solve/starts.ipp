@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
-#include <numbers>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/evaluation/parallel.hpp"
@@ -33,12 +32,16 @@ class Starts {
     if (std::isfinite(cost)) floor_ = kRounding * cost;
   }
 
-  /// Solves from the configured values; of equal results, prefers this one.
-  void solve_plain(const Eigen::VectorXd& start) {
+  /// Solves from the configured values; of equal results, prefers this one, unless a frame that was
+  /// searched for is elsewhere: a camera after half a turn, with negative focal lengths.
+  void solve_plain(const Eigen::VectorXd& start, std::span<const UnknownFrame> frames) {
     Attempt plain{start, start, {}};
     if (!solve_plain(plain)) return;
     count(plain);
-    if (!is_better(best_.result, plain.result)) best_ = std::move(plain);
+    const bool elsewhere =
+        best_.result.converged && any_turned(frames, false, best_.values, plain.values);
+    if (elsewhere ? is_better(plain.result, best_.result) : !is_better(best_.result, plain.result))
+      best_ = std::move(plain);
   }
 
   /// Searches for the poses of frames and solves from the best few fits.
@@ -75,11 +78,7 @@ class Starts {
   /// True if the best solve so far casts doubt on the given poses.
   [[nodiscard]] bool ended_badly(std::span<const UnknownFrame> frames,
                                  const Eigen::VectorXd& from) const {
-    constexpr double kLikely = std::numbers::pi / 6.0;  // limit for a bracket mounted as drawn
-    const auto doubtful = [&](const UnknownFrame& frame) {
-      return frame.has_guess && turn_between(frame, from, best_.values) > kLikely;
-    };
-    return !best_.result.converged || std::any_of(frames.begin(), frames.end(), doubtful);
+    return !best_.result.converged || any_turned(frames, true, from, best_.values);
   }
 
   /// The result and, if usable, its values.
@@ -188,7 +187,7 @@ KINECAL_INLINE StepResult solve_from_starts(const AnyProblem& problem, const Fre
   std::copy_if(unknown.begin(), unknown.end(), std::back_inserter(without_guess),
                [](const UnknownFrame& frame) { return !frame.has_guess; });
   if (detail::grid_size(without_guess) > 0) starts.search(few, without_guess, from);
-  starts.solve_plain(from);
+  starts.solve_plain(from, unknown);
   if (without_guess.size() < unknown.size() && starts.ended_badly(unknown, from)) {
     starts.search(few, unknown, from);
   }

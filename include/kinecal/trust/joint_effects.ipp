@@ -44,11 +44,7 @@ namespace kinecal::detail {
         joint.first;  // lambdas of C++20 capture no structured bindings in clang 14
     const double repeats = joint.second;
     constexpr double kStep = 1e-3;  // of what robots repeat
-    const auto move = [&](Sample& sample) {
-      for (std::size_t j = 0; j < sample.joint_positions.size(); ++j) {
-        if (sample.joint_names[j] == name) sample.joint_positions[j] += kStep * repeats;
-      }
-    };
+    const auto move = [&](Sample& sample) { sample.add_to_position(name, kStep * repeats); };
     effects.col(column) = sample_slopes({problem, free, fit, values, samples}, move, kStep);
     ++column;
   }

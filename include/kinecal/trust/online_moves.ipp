@@ -44,7 +44,7 @@ inline std::vector<std::pair<NextMove, Sample>> OnlineCalibration::Inside::candi
     const RuntimeChain chain =
         make_chain(problem->robot(), problem->base(), of->link, problem->frames());
     for (const ChainJoint& joint : chain.joints) {
-      if (moves(joint.type)) joints.insert(joint.drive.joint);
+      if (has_position(joint)) joints.insert(joint.drive.joint);
     }
   }
   std::vector<std::pair<NextMove, Sample>> found;

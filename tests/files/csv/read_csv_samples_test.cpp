@@ -83,6 +83,74 @@ TEST_F(ReadCsvSamples, PutsEveryColumnWhereItBelongs) {
   EXPECT_EQ(sample.observations[2].features[0].point, Vector3<double>(320.5, 240.0, 0.0));
 }
 
+const char* const kPoses = R"(poses:
+  flange_joint: {form: kuka, columns: [X, Y, Z, A, B, C]}
+observations:
+ - {sensor: camera, frame: optical, table: corners.csv, match: image, pixels: [[u, v]], id_columns: [id]}
+ - {sensor: arm, frame: board, table: target.csv, unit: millimetres, points: [[x, y, z]], id_columns: [id]}
+)";
+const char* const kPoseTable =
+    "image,X,Y,Z,A,B,C\n"
+    "0.png,400,-200,1100,90,0,0\n"
+    "1.png,,0,0,0,0,0\n"
+    "2.png,0,0,0,0,0,180\n"
+    "3.png,0,0,0,0,0,180\n";
+
+class ReadCsvPoses : public ReadCsvSamples {
+ protected:
+  void SetUp() override {
+    write("corners.csv", "image,id,u,v\n0.png,4,10,20\n0.png,7,11,21\n3.png,7,12,22\n");
+    write("target.csv", "id,x,y,z\n4,0,100,0\n7,50,100,0\n");
+  }
+};
+
+TEST_F(ReadCsvPoses, APoseAndTheFeaturesOfOtherTablesBecomeASample) {
+  const auto samples = read(kPoseTable, kPoses);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings,
+              ElementsAre(HasSubstr("t.csv:3: joint 'flange_joint' has no pose; the row is left")));
+  ASSERT_EQ(samples.size(), 3u);
+  const Pose<double>& pose = samples[0].poses.at("flange_joint");
+  EXPECT_LE((pose.translation - Vector3<double>(0.4, -0.2, 1.1)).norm(), 1e-15);
+  EXPECT_NEAR(pose.rotation(1, 0), 1.0, 1e-15);
+  ASSERT_EQ(samples[0].observations.size(), 2u);
+  EXPECT_EQ(samples[0].observation("camera")->features[1].id, 7);
+  EXPECT_EQ(samples[0].observation("camera")->features[1].point, Vector3<double>(11, 21, 0));
+  EXPECT_EQ(samples[0].observation("arm")->features[1].point, Vector3<double>(0.05, 0.1, 0));
+  EXPECT_EQ(samples[1].observation("camera"), nullptr) << "no corner was seen";
+  EXPECT_EQ(samples[2].observation("camera")->features.size(), 1u);
+}
+
+TEST_F(ReadCsvPoses, AFeatureOfNoSampleIsLeftOutWithAWarning) {
+  write("corners.csv", "image,id,u,v\n0.png,4,10,20\n9.png,7,11,21\n9.png,4,11,21\n");
+  (void)read(kPoseTable, kPoses);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings.back(),
+              HasSubstr("corners.csv:3: no sample has image '9.png'"));
+  EXPECT_EQ(diagnostics_.warnings.size(), 2u);
+}
+
+TEST_F(ReadCsvPoses, WrongPosesAndColumnsAreErrorsThatSayWhatToWrite) {
+  const auto errors = [&](const std::string& from, const std::string& to) {
+    (void)read(kPoseTable, with(kPoses, from, to));
+    return diagnostics_.errors;
+  };
+  EXPECT_THAT(
+      errors("form: kuka", "form: kuka, unit: metres").front(),
+      HasSubstr("t.csv:2: pose of 'flange_joint': the position is 1100 m away; it looks like "
+                "millimetres: write 'unit: millimetres'"));
+  EXPECT_THAT(errors("form: kuka", "form: kuka, angles: radians").front(),
+              HasSubstr("write 'angles: degrees'"));
+  EXPECT_THAT(
+      errors("form: kuka", "form: quaternion_xyzw").front(),
+      HasSubstr("m.yaml:2: pose of 'flange_joint': has 6 columns; the form has 7 columns: x y "
+                "z qx qy qz qw"));
+  EXPECT_THAT(errors("form: kuka", "form: kuca").front(), HasSubstr("did you mean 'kuka'?"));
+  EXPECT_THAT(errors("A, B, C]", "A, B, D]").front(), HasSubstr("column 'D' is not in the table"));
+  EXPECT_THAT(errors("match: image", "match: picture").front(), HasSubstr("column 'picture'"));
+  EXPECT_THAT(errors("table: corners.csv, ", "").front(), HasSubstr("has match, but no table"));
+}
+
 const char* const kMoving = R"(joints: {unit: degrees, columns: {pan: q1, tilt: q2}}
 sliding: {unit: metres, columns: {lift: l}}
 velocities: {unit: deg/s, columns: {tilt: dq2, pan: dq1}}

@@ -456,6 +456,31 @@ TEST(ReadSamples, ASampleMayHaveConditionsOfAnyName) {
   expect_error(with("23.5"), 2, {"conditions", "'23.5' is not a map"});
 }
 
+TEST(ReadSamples, ASampleMayHaveMeasuredPosesOfFloatingJoints) {
+  const auto with = [](const std::string& poses) {
+    return kJoints + "poses: " + poses + "\n" + kArm + "---\n";
+  };
+  const ReadText reading = read_text(
+      with("{flange: {xyz: [0.1, -2, 3e-1], quaternion_xyzw: [0.6, 0, 0, 0.8]}}") + kSample);
+  ASSERT_THAT(reading.diagnostics.errors, IsEmpty());
+  ASSERT_EQ(reading.samples.size(), 2u);
+  ASSERT_EQ(reading.samples[0].poses.size(), 1u);
+  const Pose<double>& pose = reading.samples[0].poses.at("flange");
+  EXPECT_EQ(pose.translation, Vector3<double>(0.1, -2.0, 0.3));
+  EXPECT_NEAR(pose.rotation(2, 1), 0.96, 1e-15);  // 2 q_w q_x
+  EXPECT_THAT(reading.samples[1].poses, IsEmpty());
+  const std::string good = "quaternion_xyzw: [0.6, 0, 0, 0.8]";
+  expect_error(with("{flange: {xyz: [0.1, 2], " + good + "}}"), 2,
+               {"pose of 'flange'", "xyz has 2 numbers, not 3"});
+  expect_error(with("{flange: {xyz: [0.1, 2, 3], quaternion_xyzw: [1, 0, 0, 1]}}"), 2,
+               {"pose of 'flange'", "a unit quaternion has length 1, not 1.41"});
+  expect_error(with("{flange: {xyz: [589, 2, 3], " + good + "}}"), 2,
+               {"pose of 'flange'", "it looks like millimetres; write metres"});
+  expect_error(with("{flange: {" + good + "}}"), 2, {"without 'xyz'"});
+  expect_error(with("{a: {xyz: [0, 0, 0], " + good + "}, a: {xyz: [0, 0, 0], " + good + "}}"), 2,
+               {"poses: 'a' occurs twice"});
+}
+
 TEST(ReadSamples, SensorThatOccursTwiceInASampleIsAnError) {
   expect_error(kJoints + kArm + "- sensor_name: arm\n---\n", 5,
                {"sample at line 1", "sensor 'arm' occurs twice"});

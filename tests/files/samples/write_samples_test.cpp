@@ -117,6 +117,18 @@ TEST(WriteSamples, WhatIsWrittenReadsBackExactly) {
   for (std::size_t i = 0; i < samples.size(); ++i) expect_same(samples[i], back[i]);
 }
 
+TEST(WriteSamples, MeasuredPosesReadBack) {
+  Sample sample;
+  sample.poses["flange joint"] = {exp(Vector3<double>(0.3, -1.2, 2.0)), {0.1, -2.0, 1e-3}};
+  sample.poses["other"] = {};
+  const std::vector<Sample> back = read_back(written({sample}));
+  ASSERT_EQ(back.size(), 1u);
+  ASSERT_EQ(back[0].poses.size(), 2u);
+  const Pose<double>&a = sample.poses["flange joint"], &b = back[0].poses.at("flange joint");
+  EXPECT_EQ(a.translation, b.translation);
+  EXPECT_LE((a.rotation - b.rotation).norm(), 1e-15);
+}
+
 TEST(WriteSamples, NanAndInfinityReadBack) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Sample sample{

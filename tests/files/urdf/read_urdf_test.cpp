@@ -248,7 +248,7 @@ TEST(ReadUrdfError, AJointThatOccursTwice) {
 
 TEST(ReadUrdf, AJointWithAnAxisOfLengthZeroMattersToChainsOnly) {
   const Robot robot = parse_urdf(elbow(kLinks + std::string("<axis xyz=\"0 0 0\"/>")), "arm.urdf");
-  EXPECT_EQ(robot.joint("elbow").type, JointType::floating);
+  EXPECT_EQ(robot.joint("elbow").type, JointType::planar);
   EXPECT_THROW((void)make_chain(robot, "upper", "lower"), RobotError);
 }
 

@@ -7,6 +7,7 @@
 #include "kinecal/config/doubts/ignored_urdf.hpp"
 #include "kinecal/config/doubts/initial_values.hpp"
 #include "kinecal/config/doubts/joint_positions.hpp"
+#include "kinecal/config/doubts/measured_poses.hpp"
 #include "kinecal/config/doubts/repeated_samples.hpp"
 #include "kinecal/config/doubts/sensor_points.hpp"
 #include "kinecal/config/doubts/urdf_units.hpp"
@@ -31,6 +32,7 @@ void find_doubts(const CalibrationInput& input, Diagnostics& diagnostics) {
   if (!is_part && (distinct > 1 || samples.size() == 1)) {
     detail::check_still_joints(config, joints, diagnostics);
     detail::check_enough_samples(config, calibration, distinct, diagnostics);
+    detail::check_measured_poses(config, robot, samples, diagnostics);
   }
   detail::check_sensor_points(config, robot, samples, diagnostics);
   if (diagnostics.errors.size() > before) return;

@@ -26,7 +26,7 @@ void check_ignored_urdf(const Robot& robot, const std::string& text,
     if (to_string(joint.type) != node.attribute("type").value()) {
       diagnostics.warning(source.place(node), "joint '" + name +
                                                   "' has an axis of length zero; it is taken as "
-                                                  "floating, so no chain can contain it");
+                                                  "planar, so no chain can contain it");
     }
   }
 }

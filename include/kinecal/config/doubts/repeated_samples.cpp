@@ -17,15 +17,26 @@
 
 namespace kinecal::detail {
 
-/// Indices of the samples of each pose: positions equal to 1e-5 rad or metres.
+/// Indices of the samples of each pose: positions and measured poses equal to 1e-5
+/// rad or metres.
 [[nodiscard]] inline std::vector<std::vector<std::size_t>> samples_by_pose(
-    std::span<const UsedJoint> joints, std::size_t count) {
+    std::span<const UsedJoint> joints, std::span<const Sample> samples) {
   constexpr double kSame = 1e-5, kLargest = 1e12;
+  const std::size_t count = samples.size();
   std::vector<std::vector<long long>> poses(count);
+  const auto add = [&](std::size_t sample, double position) {
+    const double steps = position / kSame;
+    poses[sample].push_back(std::abs(steps) < kLargest ? std::llround(steps) : 0);
+  };
   for (const UsedJoint& joint : joints) {
     for (std::size_t i = 0; i < joint.positions.size(); ++i) {
-      const double steps = joint.positions[i] / kSame;
-      poses[joint.samples[i]].push_back(std::abs(steps) < kLargest ? std::llround(steps) : 0);
+      add(joint.samples[i], joint.positions[i]);
+    }
+  }
+  for (std::size_t s = 0; s < count; ++s) {
+    for (const auto& [joint, pose] : samples[s].poses) {
+      for (const double number : pose.translation) add(s, number);
+      for (const double number : pose.rotation.reshaped()) add(s, number);
     }
   }
   std::map<std::vector<long long>, std::vector<std::size_t>> by_pose;
@@ -146,7 +157,7 @@ std::size_t check_repeated_samples(const Config& config, std::span<const UsedJoi
                                    std::span<const Sample> samples, Diagnostics& diagnostics) {
   const std::set<std::string> pixels = pixel_models(config);
   Repetitions found;
-  for (const auto& group : samples_by_pose(joints, samples.size())) {
+  for (const auto& group : samples_by_pose(joints, samples)) {
     add_repetitions(group, samples, pixels, found);
   }
   report_copies(found, samples, diagnostics);

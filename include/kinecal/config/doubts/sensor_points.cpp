@@ -145,6 +145,11 @@ void check_sensor_points(const Config& config, const Robot& robot, std::span<con
   for (const RecordedPoints& recorded : all) {
     reach = std::max(reach, reach_of(robot, recorded.chain));
   }
+  for (const Sample& sample : samples) {
+    for (const auto& [joint, pose] : sample.poses) {
+      reach = std::max(reach, pose.translation.norm());
+    }
+  }
   for (const RecordedPoints& recorded : all) {
     if (report_absurd_points(recorded, samples, diagnostics)) continue;
     check_frozen(recorded, samples, diagnostics);

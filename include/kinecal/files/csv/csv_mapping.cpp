@@ -12,6 +12,7 @@
 #include "kinecal/files/csv/csv_observation.ipp"
 #include "kinecal/files/yaml/config_map.ipp"
 #include "kinecal/files/yaml/yaml_document.hpp"
+#include "kinecal/text/counted.hpp"
 
 namespace kinecal {
 
@@ -39,6 +40,47 @@ void read_csv_joints(ConfigMap& map, const std::string& key, const CsvUnitNames&
     }
   }
   joints->report_unknown();
+}
+
+/// `poses:`
+void read_csv_poses(ConfigMap& file, CsvMapping& mapping) {
+  auto poses = file.map("poses", "poses");
+  if (!poses) return;
+  for (const ConfigEntry& entry : poses->entries()) {
+    auto map = poses->map(entry, "pose of '" + entry.key + "'");
+    if (!map) continue;
+    CsvPose pose{entry.key};
+    const std::string name = map->required_text("form").value_or("quaternion_xyzw");
+    const auto form = pose_form(name);
+    if (!form) {
+      map->error(map->place(), fmt::format("form '{}' is none of {}; angles about other axes are "
+                                           "fixed_zyx, euler_xyz and so on{}",
+                                           name, fmt::join(pose_form_names(), ", "),
+                                           map->did_you_mean(name, pose_form_names())));
+    }
+    pose.form = form.value_or(PoseForm{});
+    const std::string unit = read_choice(
+        *map, "unit", pose.form.millimetres ? "millimetres" : "metres", {"metres", "millimetres"});
+    pose.form.millimetres = unit == "millimetres";
+    if (pose.form.has_angles()) {
+      const std::string angles = read_choice(
+          *map, "angles", pose.form.degrees ? "degrees" : "radians", {"radians", "degrees"});
+      pose.form.degrees = angles == "degrees";
+    }
+    pose.form.inverse = map->flag("inverse", false);
+    if (const ConfigEntry* columns = map->find("columns")) {
+      pose.columns = read_csv_sum(*map, columns->value, columns->place);
+      if (form && !pose.form.has_size(pose.columns.size())) {
+        map->error(columns->place,
+                   fmt::format("has {}; the form has {}", counted(pose.columns.size(), "column"),
+                               pose.form.columns_text()));
+      }
+    } else {
+      map->error(map->place(), "columns is missing: the form has " + pose.form.columns_text());
+    }
+    map->report_unknown();
+    mapping.poses.push_back(std::move(pose));
+  }
 }
 
 /// `velocities:` and `sliding_velocities:`, in the order of the joints: of all or of none
@@ -89,12 +131,17 @@ void read_csv_conditions(ConfigMap& file, CsvMapping& mapping) {
   mapping.header = file.flag("header", true);
   read_csv_joints(file, "joints", kAngles, mapping.joints);
   read_csv_joints(file, "sliding", kLengths, mapping.joints);
+  read_csv_poses(file, mapping);
   read_csv_velocities(file, mapping);
   read_csv_conditions(file, mapping);
   for (const ConfigEntry& entry : file.list("observations")) {
     if (auto map = file.map(entry, "observation")) read_csv_observation(*map, mapping);
   }
-  if (mapping.joints.empty()) file.error(file.place(), "no joint is given; list them under joints");
+  if (mapping.joints.empty() && mapping.poses.empty()) {
+    file.error(file.place(),
+               "no joint is given; list them under joints, or measured poses of "
+               "floating joints under poses");
+  }
   if (use == CsvUse::joints) {
     mapping.observations.clear();
   } else if (mapping.observations.empty()) {

@@ -5,6 +5,9 @@
 //   joints:
 //     unit: degrees                 # radians (default) or degrees; metres or millimetres for
 //     columns: {joint_1: q1, ...}   #   prismatic joints: sliding: {unit: ..., columns: ...}
+//   poses:                          # measured poses of floating joints: instead of joints, or beside
+//     flange_joint: {form: kuka, columns: [X, Y, Z, A, B, C]}   # see files/poses/pose_numbers.hpp;
+//                                   #   unit: millimetres, angles: degrees, inverse: true
 //   velocities:                     # of all joints or of none
 //     unit: deg/s                   # rad/s (default) or deg/s; m/s or mm/s for prismatic joints:
 //     columns: {joint_1: dq1, ...}  #   sliding_velocities: {unit: ..., columns: ...}
@@ -23,6 +26,12 @@
 //      pixels: [[u1, v1], [u2, v2]]
 //      ids: [4, 7]                  # of the points, pixels or constants: what pairs the sensors'
 //                                   #   features.  From columns: id_columns: [tag1, tag2]
+//    - sensor: camera               # features in a table of their own, a row for each feature:
+//      frame: optical_frame
+//      table: corners.csv           # beside this file
+//      match: image                 # a column of both tables; without it, each sample has all rows
+//      pixels: [[u, v]]
+//      id_columns: [id]
 //
 // Give a column by its name or by its number from 1.  Each point becomes a feature.  A sensor may
 // occur several times with different frames: its features are appended.  If the frame changes from
@@ -35,6 +44,7 @@
 #include <vector>
 
 #include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/poses/pose_numbers.hpp"
 #include "kinecal/geometry/rotation.hpp"
 
 namespace kinecal {
@@ -61,6 +71,13 @@ struct CsvJoint {
   CsvUnit unit;      ///< of the columns; per second for a velocity
 };
 
+/// The measured pose of a floating joint in every sample.
+struct CsvPose {
+  std::string joint;    ///< its name in the URDF
+  PoseForm form = {};   ///< of the numbers
+  CsvSum columns = {};  ///< one for each number: not a sum
+};
+
 /// A condition of every sample: a temperature, a load.
 struct CsvCondition {
   std::string name;  ///< of the condition
@@ -77,6 +94,8 @@ struct CsvObservation {
   std::vector<Vector3<double>> constants;     ///< metres
   std::vector<int> ids;                       ///< of each point or constant; empty: not given here
   CsvSum id_columns;                          ///< one column for each; empty: see `ids`
+  std::string table = {};                     ///< path of a table of its own; empty: the samples'
+  CsvSum match = {};                          ///< one column of both tables; empty: all rows belong
 };
 
 /// What the columns of a table mean.
@@ -84,6 +103,7 @@ struct CsvMapping {
   char separator = ',';                      ///< between cells; ' ' for one or more blanks
   bool header = true;                        ///< the first row names the columns
   std::vector<CsvJoint> joints;              ///< positions in every sample
+  std::vector<CsvPose> poses;                ///< in every sample
   std::vector<CsvJoint> velocities;          ///< of all joints, in their order; or empty
   std::vector<CsvCondition> conditions;      ///< of every sample
   std::vector<CsvObservation> observations;  ///< of every sample
@@ -91,8 +111,8 @@ struct CsvMapping {
 
 /// What a table is read for.
 enum class CsvUse {
-  samples,  ///< joints and observations
-  joints    ///< joints only: the observations are elsewhere, such as in photographs
+  samples,  ///< joints, poses and observations
+  joints    ///< joints and poses only: the observations are elsewhere, such as in photographs
 };
 
 /// Reads the meaning of columns.  Collects all errors; with errors, the mapping is incomplete.

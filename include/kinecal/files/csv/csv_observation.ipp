@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "kinecal/files/csv/csv_mapping.hpp"
@@ -141,6 +142,23 @@ inline void read_csv_ids(ConfigMap& map, CsvObservation& observation) {
   }
 }
 
+/// `table:` and `match:`
+inline void read_csv_own_table(ConfigMap& map, CsvObservation& observation) {
+  const ConfigEntry *table = map.find("table"), *match = map.find("match");
+  if (match != nullptr) {
+    observation.match = read_csv_sum(map, match->value, match->place);
+    if (table == nullptr) map.error(match->place, "has match, but no table");
+    if (observation.match.size() > 1) map.error(match->place, "match is a list of columns");
+  }
+  if (table == nullptr) return;
+  const auto name = config_text(table->value);
+  if (!name) return map.error(table->place, describe_config(table->value) + " is not a file");
+  observation.table = (std::filesystem::path(table->place.file).parent_path() / *name).string();
+  if (!observation.constants.empty()) {
+    map.error(table->place, "has a table and a constant; give one of them");
+  }
+}
+
 /// Reports a sensor with points in one entry and pixels in another.
 inline void check_csv_kinds(const ConfigMap& map, const CsvMapping& mapping,
                             const CsvObservation& observation) {
@@ -172,6 +190,7 @@ inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {
                                " of points, pixels and constant; give exactly one");
   }
   read_csv_ids(map, observation);
+  read_csv_own_table(map, observation);
   check_csv_kinds(map, mapping, observation);
   map.report_unknown();
   mapping.observations.push_back(std::move(observation));

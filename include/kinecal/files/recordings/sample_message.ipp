@@ -74,6 +74,9 @@ namespace kinecal::detail {
   if (!sample.conditions.empty()) {
     throw OutputError("a message of samples cannot hold conditions; write YAML");
   }
+  if (!sample.poses.empty()) {
+    throw OutputError("a message of samples cannot hold measured poses; write YAML");
+  }
   MessageFields joints = fields("name", detail::texts(sample.joint_names), "position",
                                 numbers(sample.joint_positions));
   if (!sample.joint_velocities.empty()) {

@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kinecal/files/cameras/camera_fields.ipp"
 #include "kinecal/files/cameras/camera_info.hpp"
 #include "kinecal/files/results/result_text.ipp"
+#include "kinecal/files/results/transform_files.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/parameters/joint_models.hpp"
 #include "kinecal/solve/calibrate.hpp"
@@ -109,6 +111,7 @@ std::vector<OutputFile> result_files(const Robot& robot, const std::string& urdf
   files.push_back(
       {urdf, patch_urdf(urdf_text, urdf_name, robot,
                         joint_patches(robot, result.table, options.in_servos), options.offsets)});
+  for (OutputFile& file : transform_files(robot, result.table)) files.push_back(std::move(file));
   std::string references;
   const auto refer = [&](const std::string& kind, const std::string& camera,
                          const std::string& file) {

@@ -1,6 +1,7 @@
 // Finds probable mistakes in the keys of samples.
 //
-// Only kinecal has some of the keys: a typo would silently ignore a sigma, an id or the conditions.
+// Only kinecal has some of the keys: a typo would silently ignore a sigma, an id,
+// the conditions or the poses.
 // And {x: 0,03} is the number 0 and a key 03.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -22,8 +23,8 @@ namespace kinecal::detail {
 /// @param parent  the map with the key
 [[nodiscard]] inline std::string_view meant_sample_key(SampleNode parent, std::string_view key) {
   constexpr std::size_t kMostLetters = 2;
-  for (const SampleNode own :
-       {SampleNode::conditions, SampleNode::orientation, SampleNode::sigma, SampleNode::id}) {
+  for (const SampleNode own : {SampleNode::poses, SampleNode::conditions, SampleNode::orientation,
+                               SampleNode::sigma, SampleNode::id}) {
     const SampleNodeRule& rule = sample_rule(own);
     if (rule.parent != parent) continue;
     const NearestName near = NearestName::none(key).or_nearer(rule.key, key);

@@ -18,6 +18,7 @@
 
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/samples/sample_camera.ipp"
+#include "kinecal/files/samples/sample_pose.ipp"
 #include "kinecal/files/samples/sample_schema.ipp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/samples/sample.hpp"
@@ -47,6 +48,8 @@ class SampleBuilder {
       camera_ = {};
     } else if (node == SampleNode::feature) {
       observation().features.emplace_back();
+    } else if (node == SampleNode::pose) {
+      pose_ = {};
     } else {
       camera_.begin(node, line);
     }
@@ -56,15 +59,17 @@ class SampleBuilder {
   void end(SampleNode node, int line) {
     if (node == SampleNode::joint_states) check_joints(line);
     if (node == SampleNode::orientation) end_orientation(line);
+    if (node == SampleNode::pose) end_pose(line);
     if (node == SampleNode::observation) end_observation(line);
     if (node == SampleNode::parameter) camera_.end_parameter(errors_);
   }
 
-  /// The name of the condition whose value comes next.
-  void key(int line, std::string_view name) {
-    condition_ = name;
-    if (!sample_.conditions.contains(condition_)) return;
-    errors_.add(line, fmt::format("conditions: {} occurs twice", shown(name)));
+  /// The name of the condition, or of the joint of a pose, whose value comes next.
+  void key(SampleNode node, int line, std::string_view name) {
+    key_ = name;
+    const bool is_pose = node == SampleNode::pose;
+    if (!(is_pose ? sample_.poses.contains(key_) : sample_.conditions.contains(key_))) return;
+    errors_.add(line, fmt::format("{}: {} occurs twice", sample_name(node), shown(name)));
   }
 
   /// A word, or a number as text.
@@ -93,8 +98,10 @@ class SampleBuilder {
       quaternion_(static_cast<int>(node) - static_cast<int>(SampleNode::qx)) = value;
     } else if (node == SampleNode::seconds || node == SampleNode::nanoseconds) {
       add_to_stamp(node == SampleNode::seconds ? 1e9 : 1.0, value);
+    } else if (node == SampleNode::pose_xyz_item || node == SampleNode::pose_quaternion_item) {
+      pose_.number(node, value);
     } else if (node == SampleNode::condition) {
-      sample_.conditions[condition_] = value;
+      sample_.conditions[key_] = value;
     } else if (node == SampleNode::sigma) {
       feature().sigma = value;
     } else if (node == SampleNode::id) {
@@ -149,12 +156,14 @@ class SampleBuilder {
   }
 
   void end_orientation(int line) {
-    constexpr double kMostOff = 1e-2;  // of its length; a file has few digits
-    const double length = quaternion_.norm();
-    if (std::abs(length - 1.0) > kMostOff) {
-      errors_.add(line, fmt::format("orientation: a unit quaternion has length 1, not {}", length));
-    }
-    feature().rotation = rotation_from_quaternion<double>(quaternion_ / length);
+    const auto rotation = rotation_from_rounded_quaternion(quaternion_);
+    if (!rotation) errors_.add(line, "orientation: " + not_unit_text(quaternion_.norm()));
+    feature().rotation = rotation.value_or(Matrix3<double>::Identity());
+  }
+
+  void end_pose(int line) {
+    const std::string wrong = pose_.read(sample_.poses[key_]);
+    if (!wrong.empty()) errors_.add(line, fmt::format("pose of {}: {}", shown(key_), wrong));
   }
 
   void end_observation(int line) {
@@ -181,7 +190,8 @@ class SampleBuilder {
   std::size_t joints_ = 0;  ///< of the last sample: the next one probably has as many
   Sample sample_;
   Eigen::Vector4d quaternion_ = Eigen::Vector4d::Zero();  ///< x y z w
-  std::string condition_;                                 ///< name of the last condition
+  std::string key_;  ///< name of the last condition, or joint of the last pose
+  SamplePose pose_;
   SampleCamera camera_;
 };
 

@@ -120,7 +120,7 @@ class SampleHandler {
     value_node_ = text.empty() ? SampleNode::unknown : sample_child(level.node, text);
     if (value_node_ == SampleNode::unknown)
       return doubt_sample_key(builder_.errors(), level.node, line, text);
-    if (value_node_ == SampleNode::condition) return builder_.key(line, text);
+    if (sample_has_free_keys(level.node)) return builder_.key(value_node_, line, text);
     if ((seen_ & sample_bit(value_node_)) != 0) {
       error(level.node, line,
             fmt::format("key '{}' occurs twice; is a '---' missing between samples?", text));

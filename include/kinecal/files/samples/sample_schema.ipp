@@ -2,6 +2,7 @@
 //
 //   joint_states: {header: {stamp: {secs: ..., nsecs: ...}},                (if it is known)
 //                  name: [...], position: [...], velocity: [...]}         (velocity may be absent)
+//   poses: {flange_joint: {xyz: [...], quaternion_xyzw: [...]}, ...}      (of floating joints)
 //   conditions: {temperature: ..., ...}                                   (if there are any)
 //   observations:
 //   - sensor_name: camera
@@ -38,6 +39,12 @@ enum class SampleNode : std::uint8_t {
   joint_position,
   joint_velocities,
   joint_velocity,
+  poses,
+  pose,
+  pose_xyz,
+  pose_xyz_item,
+  pose_quaternion,
+  pose_quaternion_item,
   conditions,
   condition,
   observations,
@@ -114,6 +121,12 @@ struct SampleNodeRule {
       {joint_position, joint_positions, number, ""},
       {joint_velocities, joint_states, list, "velocity"},
       {joint_velocity, joint_velocities, number, ""},
+      {poses, sample, map, "poses"},
+      {pose, poses, map, ""},
+      {pose_xyz, pose, list, "xyz", "", true},
+      {pose_xyz_item, pose_xyz, number, ""},
+      {pose_quaternion, pose, list, "quaternion_xyzw", "", true},
+      {pose_quaternion_item, pose_quaternion, number, ""},
       {conditions, sample, map, "conditions"},
       {condition, conditions, number, ""},
       {observations, sample, list, "observations", "", true},
@@ -200,9 +213,15 @@ inline constexpr auto kSampleChildren = [] {
   return kSampleChildren[static_cast<std::size_t>(parent)];
 }
 
+/// True for a map whose keys are names that the user gives.
+[[nodiscard]] constexpr bool sample_has_free_keys(SampleNode node) {
+  return node == SampleNode::conditions || node == SampleNode::poses;
+}
+
 /// The node under `parent` with this key; `unknown` if there is none.  List items have the key "".
 [[nodiscard]] constexpr SampleNode sample_child(SampleNode parent, std::string_view key) {
-  if (parent == SampleNode::conditions) return SampleNode::condition;  // their names are free
+  if (parent == SampleNode::conditions) return SampleNode::condition;
+  if (parent == SampleNode::poses) return SampleNode::pose;
   const SampleChildren& children = sample_children(parent);
   for (std::size_t i = 0; i < children.size; ++i) {
     const SampleNodeRule& r = sample_rule(children.nodes[i]);

@@ -38,6 +38,18 @@ namespace {
                      numbers_to_yaml(sample.joint_positions), velocities);
 }
 
+/// Empty for a sample without measured poses.
+[[nodiscard]] std::string poses_to_yaml(const Sample& sample) {
+  std::string all;
+  for (const auto& [joint, pose] : sample.poses) {
+    const Eigen::Vector4d q = quaternion(pose.rotation).normalized();
+    all += fmt::format("{}{}: {{xyz: {}, quaternion_xyzw: {}}}", all.empty() ? "" : ", ",
+                       name_to_yaml(joint), numbers_to_yaml({pose.translation.data(), 3}),
+                       numbers_to_yaml({q.data(), 4}));
+  }
+  return all.empty() ? "" : fmt::format("poses: {{{}}}\n", all);
+}
+
 /// Empty for a sample without conditions.
 [[nodiscard]] std::string conditions_to_yaml(const Sample& sample) {
   std::string all;
@@ -96,7 +108,8 @@ void write_samples(std::ostream& out, const std::vector<Sample>& samples) {
           "sample {}: {} joint name{} but {} position{}; it cannot be written", sample.source,
           names, names == 1 ? "" : "s", positions, positions == 1 ? "" : "s"));
     }
-    out << detail::joint_states_to_yaml(sample) << detail::conditions_to_yaml(sample)
+    out << detail::joint_states_to_yaml(sample) << detail::poses_to_yaml(sample)
+        << detail::conditions_to_yaml(sample)
         << (sample.observations.empty() ? "observations: []\n" : "observations:\n");
     for (const Observation& o : sample.observations) out << detail::observation_to_yaml(o);
     out << "---\n";

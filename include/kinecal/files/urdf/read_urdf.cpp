@@ -155,7 +155,7 @@ void check_urdf_joints(const UrdfText& source) {
   joint.origin.translation = source.vector(origin, "xyz", checked_before);
   if (moves(joint.type)) {
     joint.axis = {parsed.axis.x, parsed.axis.y, parsed.axis.z};
-    if (joint.axis.isZero(0.0)) joint.type = JointType::floating;  // no chain passes it
+    if (joint.axis.isZero(0.0)) joint.type = JointType::planar;  // no chain passes it
   }
   if (mimics_a_joint(model, parsed)) {
     joint.mimic = Mimic{parsed.mimic->joint_name, parsed.mimic->multiplier, parsed.mimic->offset};

@@ -164,7 +164,7 @@ std::vector<PosedImage> list_images(const ImageFolder& folder, Diagnostics& diag
     if (found == images.end()) continue;
     result.push_back({(std::filesystem::path(folder.images) / found->second).string(),
                       detail::depth_of(folder, found->second, sample.source, diagnostics),
-                      {{}, sample.joint_names, sample.joint_positions},
+                      {{}, sample.joint_names, sample.joint_positions, {}, sample.poses},
                       sample.source});
   }
   return result;

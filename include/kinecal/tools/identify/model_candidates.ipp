@@ -82,7 +82,7 @@ inline void ask_models(const Robot& robot, std::span<const Sample> samples,
   for (const ModelChain& of : chains) {
     std::string before;  // the joint that moves before
     for (const ChainJoint& one : of.chain.joints) {
-      if (!moves(one.type)) continue;
+      if (!has_position(one)) continue;
       if (one.drive.joint == joint) neighbours.insert(before);
       if (before == joint) neighbours.insert(one.drive.joint);
       before = one.drive.joint;
@@ -104,7 +104,7 @@ inline void ask_models(const Robot& robot, std::span<const Sample> samples,
     double way = 0.0;
     for (const ChainJoint& one : of.chain.joints) {
       if (beyond) way += one.fixed.translation.norm();
-      if (beyond && way > kApart && moves(one.type)) {
+      if (beyond && way > kApart && has_position(one)) {
         links.insert(robot.joint(one.name).child);
         way = 0.0;
       }
@@ -127,7 +127,7 @@ inline void ask_models(const Robot& robot, std::span<const Sample> samples,
   std::set<const Joint*> mimics;
   for (const ModelChain& of : chains) {
     for (const ChainJoint& joint : of.chain.joints) {
-      if (moves(joint.type) && joint.drive.joint != joint.name)
+      if (has_position(joint) && joint.drive.joint != joint.name)
         mimics.insert(&robot.joint(joint.name));
     }
   }

@@ -101,6 +101,7 @@ std::vector<std::string> driven_joints(const Robot& robot, const MeasuredTarget&
     const RuntimeChain chain = make_chain(robot, measured.base, end);
     for (const ChainJoint& joint : chain.joints) {
       const std::string& name = joint.drive.joint;
+      if (!has_position(joint)) continue;
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <set>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "kinecal/geometry/pose.hpp"
 #include "kinecal/kinematics/chain.hpp"
+#include "kinecal/kinematics/floating_joint.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/tools/init/determined_offsets.hpp"
 
@@ -164,8 +166,11 @@ class GeneratedPoses {
     std::vector<NamedNumbers> others;  // behind the camera: only if nothing is in front of it
     for (int i = 0; i < kTries && poses_.size() < kPoses; ++i) {
       NamedNumbers pose;
-      for (const std::string& joint : drives) {
-        pose[joint] = random_position(robot_.joint(joint), random);
+      for (const std::string& name : drives) {
+        const std::optional<FloatingCoordinate> part = floating_coordinate(name);
+        Joint free;  // a coordinate of a floating joint
+        free.type = part && part->index < 3 ? JointType::prismatic : JointType::continuous;
+        pose[name] = random_position(part ? free : robot_.joint(name), random);
       }
       if (i == 0 && measured_.is_camera && measured_.target == measured_.base) {
         put_before_camera(pose);

@@ -24,6 +24,7 @@ namespace {
   const RuntimeChain chain = make_chain(robot, base, link);
   for (const ChainJoint& joint : chain.joints) {
     const std::string& name = joint.drive.joint;
+    if (!has_position(joint)) continue;
     const auto is_in = [&](const std::vector<std::string>& list) {
       return std::find(list.begin(), list.end(), name) != list.end();
     };

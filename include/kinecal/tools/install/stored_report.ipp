@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "kinecal/files/json/json_value.hpp"
+#include "kinecal/files/poses/pose_numbers.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/tools/install/stored_result.hpp"
 #include "kinecal/trust/judge.hpp"
@@ -77,6 +78,16 @@ inline void read_noise(const JsonValue& report, std::int64_t format, StoredResul
   }
 }
 
+/// The measured pose of a floating joint: x y z qx qy qz qw.
+[[nodiscard]] inline Pose<double> measured_pose(const JsonValue& value) {
+  const std::vector<double> numbers = value.as_numbers();
+  const PoseForm form;
+  if (!form.has_size(numbers.size())) throw JsonError("it has a measured pose without 7 numbers");
+  const NumberedPose read = pose_from_numbers(form, numbers);
+  if (!read.wrong.empty()) throw JsonError("it has a measured pose that is wrong: " + read.wrong);
+  return read.pose;
+}
+
 inline void read_poses(const JsonValue& report, StoredResult& result) {
   const JsonValue poses = report.at("poses");
   result.poses.joints = poses.texts("joints");
@@ -84,6 +95,19 @@ inline void read_poses(const JsonValue& report, StoredResult& result) {
     result.poses.positions.push_back(row.as_numbers());
     if (result.poses.positions.back().size() != result.poses.joints.size()) {
       throw JsonError("it has a pose with a wrong number of joints");
+    }
+  }
+  if (poses.find("floating")) {
+    result.poses.floating = poses.texts("floating");
+    for (const JsonValue& row : poses.list("measured")) {
+      std::vector<Pose<double>>& measured = result.poses.measured.emplace_back();
+      for (const JsonValue& numbers : row.as_list()) measured.push_back(measured_pose(numbers));
+      if (measured.size() != result.poses.floating.size()) {
+        throw JsonError("it has a pose with a wrong number of floating joints");
+      }
+    }
+    if (result.poses.measured.size() != result.poses.positions.size()) {
+      throw JsonError("it has not as many measured poses as joint positions");
     }
   }
   const auto pose = report.find("pose");

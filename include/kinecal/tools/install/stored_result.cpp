@@ -105,8 +105,12 @@ CalibratedState StoredResult::state(const ParameterTable& table) const {
 
 std::vector<Sample> StoredResult::pose_samples() const {
   std::vector<Sample> all;
-  for (const std::vector<double>& positions : poses.positions) {
+  for (std::size_t i = 0; i < poses.positions.size(); ++i) {
+    const std::vector<double>& positions = poses.positions[i];
     Sample sample;
+    for (std::size_t j = 0; j < poses.floating.size(); ++j) {
+      sample.poses[poses.floating[j]] = poses.measured[i][j];
+    }
     sample.joint_names = poses.joints;
     sample.joint_positions = positions;
     all.push_back(std::move(sample));

@@ -1,0 +1,119 @@
+// kinecal init --poses: a hand-eye calibration from poses of a flange, without a URDF.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "kinecal/files/csv/read_csv_samples.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/text_file.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/text/counted.hpp"
+#include "kinecal/text/shell_word.hpp"
+#include "kinecal/tools/init/hand_eye.hpp"
+#include "kinecal/tools/init/initial_capture.hpp"
+#include "kinecal/tools/init/initial_config.hpp"
+#include "output_file.hpp"
+#include "terminal.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// @throws InputError  if no board is given, or options do not go together
+InitTargetWord board_of(const InitOptions& options) {
+  constexpr const char* kBoards =
+      "checkerboard, apriltag or charuco if the flange carries the board and the camera stands "
+      "beside the robot; world_checkerboard, world_apriltag or world_charuco if the flange carries "
+      "the camera";
+  if (options.targets.empty()) throw InputError(fmt::format("--target: give {}", kBoards));
+  const auto target = init_target(options.targets.front());
+  const bool is_board = target && (target->target == InitTarget::checkerboard ||
+                                   target->target == InitTarget::world_checkerboard);
+  if (options.targets.size() > 1 || !is_board) {
+    throw InputError(fmt::format("--target: '{}' does not go with --poses: give {}",
+                                 fmt::join(options.targets, ","), kBoards));
+  }
+  for (const auto& [option, value] :
+       {std::pair("--arm", options.arm), std::pair("--camera", options.camera),
+        std::pair("--base", options.base), std::pair("--target-frame", options.target_frame),
+        std::pair("--robot-camera-name", options.camera_name)}) {
+    if (!value.empty()) {
+      throw InputError(
+          fmt::format("{} does not go with --poses, which has names of its own", option));
+    }
+  }
+  if (!options.from.empty()) throw InputError("--from does not go with --poses");
+  return *target;
+}
+
+InitAnswers answers_of(const InitTargetWord& word, const InitOptions& options) {
+  InitAnswers answers;
+  answers.target = word.target;
+  answers.board = word.board;
+  answers.base = HandEyeNames::kBase;
+  answers.camera = HandEyeNames::kCamera;
+  answers.camera_name = "camera";
+  answers.camera_type = options.camera_type.empty() ? "camera2d" : options.camera_type;
+  answers.target_frame = HandEyeNames::kTarget;
+  if (needs_arm(word.target)) answers.arm = HandEyeNames::kFlange;
+  return answers;
+}
+
+}  // namespace
+
+int init_hand_eye(const InitOptions& options) {
+  const InitTargetWord word = board_of(options);
+  const InitAnswers answers = answers_of(word, options);
+  const std::filesystem::path folder = folder_of(options.output);
+  const auto beside = [&](const char* name) {
+    return folder == "." ? std::string(name) : (folder / name).string();
+  };
+  const std::string urdf = beside("hand_eye.urdf"), columns = beside("columns.yaml");
+  const std::string capture = options.capture.empty() ? beside("capture.yaml") : options.capture;
+  const bool has_corners = !options.corners.empty();
+  std::vector<std::string> inputs = {options.poses, options.corners, options.target_points,
+                                     holder_of(answers)};
+  std::vector<std::string> outputs = {options.output, urdf, columns};
+  if (!has_corners) outputs.push_back(capture);
+  for (const std::string& output : outputs) check_output(output, inputs, options.force);
+
+  const std::string urdf_text = hand_eye_urdf(word.target == InitTarget::world_checkerboard);
+  const Robot robot = parse_urdf(urdf_text, urdf);
+  const HandEyeTables tables{options.poses,   options.form,          options.inverse,
+                             options.corners, options.target_points, holder_of(answers)};
+  const std::string config = initial_config(robot, answers);
+  write_text_file(columns, hand_eye_columns(tables, folder.string()));
+  Diagnostics diagnostics;
+  const CsvMapping mapping =
+      read_csv_mapping(columns, diagnostics, has_corners ? CsvUse::samples : CsvUse::joints);
+  const std::vector<Sample> samples =
+      csv_samples(detail::read_text_file(options.poses), mapping, options.poses, diagnostics);
+  print_or_throw(diagnostics);
+  write_text_file(urdf, urdf_text);
+  write_text_file(options.output, config);
+  say("wrote {}, {} and {}\n  {} of the flange; {} says how the columns are read: look at it\n",
+      urdf, columns, options.output, counted(samples.size(), "pose"), columns);
+  const std::string inputs_of_calibrate = fmt::format(
+      "--urdf {} --config {} --samples samples.yaml", shell_word(urdf), shell_word(options.output));
+  if (has_corners) {
+    say("next: kinecal convert {} samples.yaml --columns {} && kinecal calibrate {} --camera "
+        "camera=camera.yaml --output calibrated\n",
+        shell_word(options.poses), shell_word(columns), inputs_of_calibrate);
+    return kDone;
+  }
+  write_text_file(capture, initial_capture(robot, answers));
+  say("wrote {}\n  fill in what is zero: its sizes decide the scale of the result\n", capture);
+  say("next: kinecal detect {} --images images --poses {} --columns {} --camera camera.yaml "
+      "--frame "
+      "{} -o samples.yaml && kinecal calibrate {} --output calibrated\n",
+      shell_word(capture), shell_word(options.poses), shell_word(columns), HandEyeNames::kCamera,
+      inputs_of_calibrate);
+  return kDone;
+}
+
+}  // namespace kinecal::cli

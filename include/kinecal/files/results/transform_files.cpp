@@ -1,0 +1,140 @@
+// Definitions of transform_files.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/files/results/transform_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "kinecal/files/json/json_text.hpp"
+#include "kinecal/files/results/result_files.hpp"
+#include "kinecal/files/xml/xml_edit.ipp"
+#include "kinecal/files/yaml/yaml_text.hpp"
+#include "kinecal/geometry/rpy.hpp"
+#include "kinecal/kinematics/chain.hpp"
+#include "kinecal/parameters/parameter_table.hpp"
+#include "kinecal/text/shell_word.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// A fixed joint with its calibrated pose.
+struct CalibratedMount {
+  const Joint* joint;
+  Pose<double> parent_T_child;  ///< metres
+  bool on_hand = false;         ///< a floating joint moves its parent
+  const Joint* floating;        ///< the floating joint of the robot
+};
+
+[[nodiscard]] std::string numbers_text(const Vector3<double>& v) {
+  return fmt::format("{} {} {}", v.x(), v.y(), v.z());
+}
+
+[[nodiscard]] std::string urdf_text_of(const CalibratedMount& mount) {
+  const auto quoted = [](const std::string& name) { return xml_attribute_text(name, '"'); };
+  return fmt::format(
+      "<joint name=\"{}\" type=\"fixed\">\n  <parent link=\"{}\"/>\n  <child link=\"{}\"/>\n"
+      "  <origin xyz=\"{}\" rpy=\"{}\"/>\n</joint>\n",
+      quoted(mount.joint->name), quoted(mount.joint->parent), quoted(mount.joint->child),
+      numbers_text(mount.parent_T_child.translation),
+      numbers_text(rpy_from_rotation(mount.parent_T_child.rotation)));
+}
+
+/// Arguments of static_transform_publisher, each as `word` writes it.
+template <class Word>
+[[nodiscard]] std::vector<std::string> publisher_arguments(const CalibratedMount& mount,
+                                                           const Word& word) {
+  const Vector3<double>& t = mount.parent_T_child.translation;
+  const Eigen::Vector4d q = quaternion(mount.parent_T_child.rotation).normalized();
+  std::vector<std::string> all;
+  const auto add = [&](const char* name, const std::string& value) {
+    all.push_back(word(name));
+    all.push_back(word(value));
+  };
+  const auto number = [](double value) { return fmt::format("{}", value); };
+  add("--x", number(t.x()));
+  add("--y", number(t.y()));
+  add("--z", number(t.z()));
+  add("--qx", number(q(0)));
+  add("--qy", number(q(1)));
+  add("--qz", number(q(2)));
+  add("--qw", number(q(3)));
+  add("--frame-id", mount.joint->parent);
+  add("--child-frame-id", mount.joint->child);
+  return all;
+}
+
+[[nodiscard]] std::string shell_text(const CalibratedMount& mount) {
+  const auto word = [](const std::string& text) { return shell_word(text); };
+  return fmt::format("ros2 run tf2_ros static_transform_publisher {}\n",
+                     fmt::join(publisher_arguments(mount, word), " "));
+}
+
+[[nodiscard]] std::string launch_text(const CalibratedMount& mount) {
+  const auto word = [](const std::string& text) { return json_text(Json(text)); };
+  return fmt::format(
+      "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
+      "def generate_launch_description():\n"
+      "    return LaunchDescription([\n"
+      "        Node(\n            package=\"tf2_ros\",\n"
+      "            executable=\"static_transform_publisher\",\n            output=\"log\",\n"
+      "            arguments=[\n                {}],\n        ),\n    ])\n",
+      fmt::join(publisher_arguments(mount, word), ",\n                "));
+}
+
+[[nodiscard]] std::string matrix_text(const CalibratedMount& mount) {
+  std::string text;
+  const Pose<double>& pose = mount.parent_T_child;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) text += fmt::format("{} ", pose.rotation(i, j));
+    text += fmt::format("{}\n", pose.translation(i));
+  }
+  return text + "0 0 0 1\n";
+}
+
+[[nodiscard]] std::string easy_handeye_text(const CalibratedMount& mount) {
+  const Eigen::Vector4d q = quaternion(mount.parent_T_child.rotation).normalized();
+  const Vector3<double>& t = mount.parent_T_child.translation;
+  return fmt::format(
+      "parameters:\n  eye_on_hand: {}\n  robot_base_frame: {}\n  robot_effector_frame: {}\n"
+      "  tracking_base_frame: {}\n"
+      "transformation:\n  x: {}\n  y: {}\n  z: {}\n  qx: {}\n  qy: {}\n  qz: {}\n  qw: {}\n",
+      mount.on_hand, name_to_yaml(mount.floating->parent), name_to_yaml(mount.floating->child),
+      name_to_yaml(mount.joint->child), number_to_yaml(t.x()), number_to_yaml(t.y()),
+      number_to_yaml(t.z()), number_to_yaml(q(0)), number_to_yaml(q(1)), number_to_yaml(q(2)),
+      number_to_yaml(q(3)));
+}
+
+}  // namespace
+}  // namespace detail
+
+std::vector<OutputFile> transform_files(const Robot& robot, const ParameterTable& table) {
+  const auto floating = std::find_if(robot.joints().begin(), robot.joints().end(),
+                                     [](const Joint& j) { return j.type == JointType::floating; });
+  if (floating == robot.joints().end()) return {};
+  std::vector<OutputFile> files;
+  for (const JointPatch& patch : joint_patches(robot, table)) {
+    const Joint& joint = robot.joint(patch.joint);
+    if (joint.type != JointType::fixed) continue;
+    const std::vector<const Joint*> above = joints_to_root(robot, joint.parent);
+    const bool on_hand = std::any_of(above.begin(), above.end(), [](const Joint* one) {
+      return one->type == JointType::floating;
+    });
+    const detail::CalibratedMount mount{&joint, joint.origin * patch.correction, on_hand,
+                                        &*floating};
+    std::string stem = joint.name;
+    std::replace(stem.begin(), stem.end(), '/', '_');
+    files.push_back({stem + ".xml", detail::urdf_text_of(mount)});
+    files.push_back({stem + ".sh", detail::shell_text(mount)});
+    files.push_back({stem + ".launch.py", detail::launch_text(mount)});
+    files.push_back({stem + ".txt", detail::matrix_text(mount)});
+    files.push_back({stem + ".easy_handeye.yaml", detail::easy_handeye_text(mount)});
+  }
+  return files;
+}
+
+}  // namespace kinecal

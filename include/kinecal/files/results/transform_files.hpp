@@ -1,0 +1,26 @@
+// The calibrated pose of a camera, in the forms that programs of hand-eye calibrations read:
+//
+//   <joint>.xml          the joint of a URDF
+//   <joint>.sh           the call of tf2_ros static_transform_publisher
+//   <joint>.launch.py    the same as a launch file, as MoveIt Calibration writes it
+//   <joint>.txt          parent_T_child as a 4 x 4 matrix
+//   <joint>.easy_handeye.yaml    calibration file of easy_handeye
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "kinecal/files/results/output_file.hpp"
+#include "kinecal/kinematics/robot.hpp"
+
+namespace kinecal {
+
+class ParameterTable;
+
+/// The files of each calibrated fixed joint of a robot with a floating joint: of hand-eye
+/// calibrations.  Other robots get none: their URDF has it all.
+/// @param robot  before the calibration
+[[nodiscard]] std::vector<OutputFile> transform_files(const Robot& robot,
+                                                      const ParameterTable& table);
+
+}  // namespace kinecal

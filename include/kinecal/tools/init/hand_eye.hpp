@@ -1,0 +1,48 @@
+// A robot of which only the poses of its flange are known: what stands in for its URDF, and what the
+// columns of its tables mean.
+//
+//   base_link --flange_joint, floating--> flange        the poses
+//   base_link or flange --camera_joint, fixed--> camera the camera beside the robot, or on its hand
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "kinecal/files/diagnostics.hpp"
+
+namespace kinecal {
+
+/// The names in hand_eye_urdf().
+struct HandEyeNames {
+  static constexpr const char* kBase = "base_link";
+  static constexpr const char* kFlange = "flange";
+  static constexpr const char* kFlangeJoint = "flange_joint";
+  static constexpr const char* kCamera = "camera";  ///< its optical frame
+  static constexpr const char* kCameraJoint = "camera_joint";
+  static constexpr const char* kTarget = "target";  ///< the frame of the board
+};
+
+/// The URDF of a flange and a camera.
+/// @param camera_on_hand  on the flange; else beside the robot
+[[nodiscard]] std::string hand_eye_urdf(bool camera_on_hand);
+
+/// Tables of a hand-eye calibration.
+struct HandEyeTables {
+  std::string poses;           ///< file: a row for each pose of the flange
+  std::string form = {};       ///< of the poses, see pose_form(); empty: by names of columns
+  bool inverse = false;        ///< the poses are those of the base in the flange
+  std::string corners = {};    ///< file: a row for each corner seen; empty: they are in photographs
+  std::string target = {};     ///< file: where the corners are on the board; with `corners` only
+  std::string holder = "arm";  ///< sensor_name of the board: what holds it
+};
+
+/// The text of a columns.yaml for these tables.  Columns are recognised by their names: x y z with qx qy
+/// qz qw, q1 to q4 (ABB), rx ry rz, roll pitch yaw, A B C (KUKA), W P R (Fanuc); or by their number and the
+/// form.  Units are those of names, else of values.  Corners have id, u, v and a column that the
+/// table of poses has, too; the target id, x, y, z.
+/// @param output_folder  of the columns.yaml, to which the names of tables are relative
+/// @throws InputError  "file: ..." if a table cannot be read, or what a column means is not clear
+[[nodiscard]] std::string hand_eye_columns(const HandEyeTables& tables,
+                                           const std::string& output_folder);
+
+}  // namespace kinecal
