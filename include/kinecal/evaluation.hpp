@@ -6,6 +6,7 @@
 #include "kinecal/evaluation/basic_problem.hpp"
 #include "kinecal/evaluation/block_term.hpp"
 #include "kinecal/evaluation/evaluator.hpp"
+#include "kinecal/evaluation/own_poses.hpp"
 #include "kinecal/evaluation/parallel.hpp"
 #include "kinecal/evaluation/predict.hpp"
 #include "kinecal/evaluation/prefetch.hpp"

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/tools/cameras/camera_start.hpp"
+#include "kinecal/tools/cameras/lens_start.hpp"
 #include "kinecal/tools/detect/board_turns.hpp"
 #include "kinecal/tools/detect/contact_sheet.hpp"
 #include "kinecal/tools/detect/detect.hpp"

@@ -181,12 +181,19 @@ bool add_models(AnyProblem& problem, const StepConfig& step, std::span<const Sam
   return robot;
 }
 
+void give_own_poses(AnyProblem& problem, const Config& config) {
+  std::vector<std::string> joints;
+  for (const FreeParamConfig& frame : config.per_sample) joints.push_back(frame.name);
+  problem.give_own_poses(std::move(joints));
+}
+
 /// Prepares the search for unknown poses of a step: the frames, and a few samples, with lines of
 /// sight instead of pixels, because the search also looks behind the camera.
 void prepare_search(CalibrationStep& step, const Config& config, const StepConfig& of_config,
                     const Robot& robot, std::span<const Sample> samples) {
   const ParameterTable& table = step.problem->table();
   step.unknown_frames = unknown_frames(config, of_config, robot, table, step.free);
+  if (!config.per_sample.empty()) step.unknown_frames.clear();  // start_cameras() knows where to begin
   if (step.unknown_frames.empty()) return;
   StepConfig of_step = of_config;
   Diagnostics ignored;  // already reported for the whole problem
@@ -241,6 +248,7 @@ Calibration assemble(const Config& given, const Robot& of_urdf, std::span<const 
   for (const StepConfig& step : config.steps) {
     std::unique_ptr<AnyProblem> problem = make_problem(
         robot, config.base_link, detail::with_bounds(calibration.table, step, diagnostics), frames);
+    detail::give_own_poses(*problem, config);
     if (!detail::add_models(*problem, step, samples, diagnostics)) continue;
     (void)detail::add_samples(*problem, samples, diagnostics);
     if (!diagnostics.errors.empty()) continue;

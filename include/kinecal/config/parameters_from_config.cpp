@@ -274,6 +274,7 @@ std::set<std::string> frames_of(const Config& config) {
   for (const StepConfig& step : config.steps) {
     for (const FreeFrameConfig& frame : step.free_frames) frames.insert(frame.name);
   }
+  for (const FreeParamConfig& frame : config.per_sample) frames.insert(frame.name);
   return frames;
 }
 
@@ -294,6 +295,9 @@ ParameterTable parameters_from(const Config& config, const Robot& robot,
     }
     add_params(table, robot, step, diagnostics);
     add_valued_joints(table, robot, step, diagnostics);
+  }
+  for (const FreeParamConfig& frame : config.per_sample) {
+    add_parameters(table, frame.name, kFrameParameters);
   }
   check_collisions(table, robot, config, diagnostics);
   return table;

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
@@ -76,6 +77,10 @@ class AnyEvaluator {
   [[nodiscard]] virtual NormalEquations normal_equations(ParameterValues values,
                                                          bool derivatives = true,
                                                          Losses losses = Losses::as_given) = 0;
+
+  /// The best poses that samples have of their own, by sample and joint: see AnyProblem::give_own_poses().
+  /// @param values  of all parameters of the table
+  [[nodiscard]] virtual std::vector<std::vector<Pose<double>>> own_poses(ParameterValues values);
 };
 
 /// Evaluates all residuals once: see AnyEvaluator::evaluate().

@@ -15,6 +15,10 @@ const bool EigenAligned::KINECAL_LIBRARY_CHECK = true;
 }  // namespace KINECAL_INSTRUCTION_SET
 #endif
 
+KINECAL_INLINE std::vector<std::vector<Pose<double>>> AnyEvaluator::own_poses(ParameterValues) {
+  return {};
+}
+
 KINECAL_INLINE NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   cost += other.cost;
   gradient += other.gradient;

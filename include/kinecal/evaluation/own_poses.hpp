@@ -49,6 +49,8 @@ struct OwnPoseSums {
   /// The step to the minimum, shortened by the damping of Levenberg and Marquardt.
   /// @returns  (poses)
   [[nodiscard]] Eigen::VectorXd step(double damping) const;
+  /// The decrease of the cost that a step promises.
+  [[nodiscard]] double decrease(const Eigen::VectorXd& change) const;
 };
 
 }  // namespace detail
@@ -70,9 +72,7 @@ class OwnPosesEvaluator final : public AnyEvaluator {
   [[nodiscard]] NormalEquations normal_equations(ParameterValues values, bool derivatives = true,
                                                  Losses losses = Losses::as_given) override;
 
-  /// Fits the poses of all samples.
-  /// @returns  of each sample, in the order of AnyProblem::own_poses()
-  [[nodiscard]] std::vector<std::vector<Pose<double>>> fitted(ParameterValues values);
+  [[nodiscard]] std::vector<std::vector<Pose<double>>> own_poses(ParameterValues values) override;
 
  private:
   using Poses = std::vector<std::vector<Pose<double>>>;  ///< of each sample and frame

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "kinecal/evaluation/own_poses.hpp"
@@ -92,6 +93,28 @@ inline Eigen::VectorXd OwnPoseSums::step(double damping) const {
       scaled.ldlt().solve(-per_length.cwiseProduct(gradient)));
 }
 
+inline double OwnPoseSums::decrease(const Eigen::VectorXd& change) const {
+  return -gradient.dot(change) - 0.5 * change.dot(hessian * change);
+}
+
+/// The damping of a Levenberg-Marquardt search.
+/// Source: Nielsen, Damping Parameter in Marquardt's Method, 1999.
+struct Damping {
+  static constexpr double kMost = 1e12;  ///< where no step helps
+  double value = 1e-6, growth = 2.0;
+
+  /// @param gain  the decrease of the cost, as a share of what was promised; negative: there was none
+  void update(double gain) {
+    if (gain < 0.0) {
+      value = std::max(1e-4, value * growth);
+      growth *= 2.0;
+    } else {
+      value *= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * gain - 1.0, 3));
+      growth = 2.0;
+    }
+  }
+};
+
 }  // namespace detail
 
 template <class S>
@@ -103,6 +126,11 @@ OwnPosesEvaluator<S>::OwnPosesEvaluator(const BasicProblem<S>& problem, const Fr
       batches_(problem.batches()),
       now_(problem.poses_of_samples()),
       best_(now_) {
+  for (const int p : own_.parameters()) {
+    if (free.column(p) < 0) continue;
+    throw std::invalid_argument("'" + problem.table()[p].name +
+                                "' is of a pose that each sample has of its own; it cannot be free");
+  }
   places_.resize(now_.size());
   for (std::size_t l = 0; l < batches_.size(); ++l) {
     offsets_.push_back(detail::pose_places(problem, batches_[l].layout()));
@@ -110,8 +138,8 @@ OwnPosesEvaluator<S>::OwnPosesEvaluator(const BasicProblem<S>& problem, const Fr
       places_[static_cast<std::size_t>(batches_[l].sample(row))] = {l, row};
     }
   }
-  by_own_ = std::make_unique<Evaluator<S>>(problem, batches_, own_);
-  by_all_ = std::make_unique<Evaluator<S>>(problem, batches_, all_);
+  by_own_ = std::make_unique<Evaluator<S>>(problem, batches_, own_, 1);
+  by_all_ = std::make_unique<Evaluator<S>>(problem, batches_, all_, 1);
 }
 
 template <class S>
@@ -164,16 +192,18 @@ void OwnPosesEvaluator<S>::fit(ParameterValues values, Losses losses) {
   now_ = best_;
   for (std::size_t s = 0; s < now_.size(); ++s) place(s);
   std::vector<detail::OwnPoseSums> at = sums(values, losses);
-  std::vector<double> damping(now_.size(), 0.0);
+  std::vector<detail::Damping> damping(now_.size());
   std::vector<bool> moves(now_.size(), true);
-  constexpr int kMostSteps = 50;
-  constexpr double kSettled = 1e-13, kFirstDamping = 1e-3, kMostDamping = 1e8;
+  constexpr int kMostSteps = 100;
+  constexpr double kSettled = 1e-14;  // of the cost
   for (int step = 0; step < kMostSteps; ++step) {
     const Poses before = now_;
+    std::vector<double> promised(now_.size(), 0.0);
     for (std::size_t s = 0; s < now_.size(); ++s) {
       if (!moves[s]) continue;
-      const Eigen::VectorXd change = at[s].step(damping[s]);
-      moves[s] = -at[s].gradient.dot(change) > kSettled * at[s].cost;
+      const Eigen::VectorXd change = at[s].step(damping[s].value);
+      promised[s] = at[s].decrease(change);
+      moves[s] = promised[s] > kSettled * at[s].cost && damping[s].value < detail::Damping::kMost;
       if (!moves[s]) continue;
       for (std::size_t f = 0; f < now_[s].size(); ++f) {
         now_[s][f] = detail::moved(now_[s][f], change.segment(6 * static_cast<Eigen::Index>(f), 6));
@@ -184,15 +214,14 @@ void OwnPosesEvaluator<S>::fit(ParameterValues values, Losses losses) {
     std::vector<detail::OwnPoseSums> there = sums(values, losses);
     for (std::size_t s = 0; s < now_.size(); ++s) {
       if (!moves[s]) continue;
-      if (there[s].rows == at[s].rows && there[s].cost <= at[s].cost) {
+      const bool is_better = there[s].rows == at[s].rows && there[s].cost <= at[s].cost;
+      damping[s].update(is_better ? (at[s].cost - there[s].cost) / promised[s] : -1.0);
+      if (is_better) {
         at[s] = std::move(there[s]);
-        damping[s] *= damping[s] > kFirstDamping ? 0.1 : 0.0;
-        continue;
+      } else {
+        now_[s] = before[s];
+        place(s);
       }
-      now_[s] = before[s];
-      place(s);
-      damping[s] = std::max(kFirstDamping, 10.0 * damping[s]);
-      moves[s] = damping[s] < kMostDamping;
     }
   }
 }
@@ -276,7 +305,7 @@ NormalEquations OwnPosesEvaluator<S>::normal_equations(ParameterValues values, b
 }
 
 template <class S>
-std::vector<std::vector<Pose<double>>> OwnPosesEvaluator<S>::fitted(ParameterValues values) {
+std::vector<std::vector<Pose<double>>> OwnPosesEvaluator<S>::own_poses(ParameterValues values) {
   fit(values, Losses::as_given);
   return now_;
 }

@@ -126,6 +126,9 @@ KINECAL_INLINE std::vector<int> AnyProblem::touched_parameters() const {
     }
   }
   touched.erase(-1);
+  for (const std::string& joint : own_poses_) {
+    for (const auto axis : kFrameAxes) touched.erase(table_.find(parameter_name(joint, axis)));
+  }
   return {touched.begin(), touched.end()};
 }
 

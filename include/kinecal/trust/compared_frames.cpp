@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/compared_frames.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,18 @@ namespace {
   return frame;
 }
 
+/// True if a sensor is at a pose that each sample has of its own: where it is says nothing of the robot.
+[[nodiscard]] bool has_own_pose(const AnyProblem& problem, const std::vector<int>& sensors) {
+  const std::vector<std::string>& own = problem.own_poses();
+  return std::any_of(sensors.begin(), sensors.end(), [&](int s) {
+    const auto& joints =
+        problem.sensors()[static_cast<std::size_t>(s)].chains().front().chain().joints;
+    return std::any_of(joints.begin(), joints.end(), [&](const ChainJoint& joint) {
+      return std::find(own.begin(), own.end(), joint.floating) != own.end();
+    });
+  });
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -44,7 +57,8 @@ std::optional<std::pair<FrameOnRobot, FrameOnRobot>> compared_frames(
       const auto& first = problem.sensors()[static_cast<std::size_t>(sensors[0])];
       if (first.sensor().in_own_frame()) std::swap(one, other);
     }
-    if (one.name() != other.name()) return std::pair(one, other);
+    const bool is_own = detail::has_own_pose(problem, sensors);
+    if (one.name() != other.name() && !is_own) return std::pair(one, other);
   }
   return std::nullopt;
 }

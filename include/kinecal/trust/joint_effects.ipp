@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <map>
 #include <span>
 #include <string>
@@ -19,7 +20,9 @@ namespace kinecal::detail {
   for (const MountedSensor& sensor : problem.sensors()) {
     for (const SampledChain& chain : sensor.chains()) {
       for (const ChainJoint& joint : chain.chain().joints) {
-        if (joint.type == JointType::fixed) continue;
+        const std::vector<std::string>& own = problem.own_poses();
+        const bool is_own = std::find(own.begin(), own.end(), joint.floating) != own.end();
+        if (joint.type == JointType::fixed || is_own) continue;
         joints[joint.drive.joint] = turns(joint.type) ? kRadians : kMetres;
       }
     }

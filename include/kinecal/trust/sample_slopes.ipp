@@ -33,6 +33,7 @@ struct FittedSamples {
       move(sample);
       moved->add_sample(sample);
     }
+    moved->set_poses_of_samples(problem.poses_of_samples());
     const auto evaluator = moved->evaluator(free, 1);
     const LinearFit there = linear_fit(*evaluator, values, fit.coordinates, false);
     if (there.residual.size() == fit.residual.size()) {
