@@ -15,10 +15,12 @@
 #include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/hold_parameters.hpp"
+#include "kinecal/config/own_frames.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/shell_word.hpp"
+#include "kinecal/tools/cameras/start_cameras.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
@@ -144,17 +146,22 @@ Input read_input(const InputOptions& options) {
   Recording recording = read_recordings(options.samples, diagnostics);
   input.samples = std::move(recording.samples);
   if (recording.urdf.empty()) recording.urdf = options.urdf_text;
-  if (options.urdf.empty() && recording.urdf.empty()) {
+  const bool needs_urdf = !configuration || configuration->per_sample.empty();
+  if (options.urdf.empty() && recording.urdf.empty() && needs_urdf) {
     diagnostics.error({"--urdf", 0},
                       options.samples.empty()
                           ? "is required without samples"
                           : "is required, because the samples contain no /robot_description");
-  } else if (options.urdf.empty()) {
+  } else if (options.urdf.empty() && !recording.urdf.empty()) {
     input.urdf = "/robot_description";
     robot = read_robot([&] { return std::move(recording.urdf); });
   }
   for (const std::string& camera : options.cameras) {
     attempt([&] { return set_camera(input.samples, camera, diagnostics), true; }, diagnostics);
+  }
+  if (!robot && options.urdf.empty() && configuration && !configuration->per_sample.empty()) {
+    input.urdf = "cameras.urdf";  // there is no robot
+    robot = read_robot([&] { return urdf_of_cameras(*configuration); });
   }
   if (robot && is_proposed && diagnostics.errors.size() == before) {
     configuration =
@@ -167,6 +174,8 @@ Input read_input(const InputOptions& options) {
     if (options.recorded == Recorded::before) {
       add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
     }
+    input.robot = with_own_frames(input.robot, input.config, input.samples, diagnostics);
+    start_cameras(input.config, input.robot, input.samples, diagnostics);
     choose_lenses(input.config, input.samples, diagnostics);
     choose_images(input.config, input.robot, input.samples, diagnostics);
     is_open ? leave_open(input, options) : assemble_input(input, options);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinecal/sensors/any_sensor.hpp"
+#include "kinecal/sensors/bent_board.hpp"
 #include "kinecal/sensors/built_in_sensor.hpp"
 #include "kinecal/sensors/camera_image.hpp"
 #include "kinecal/sensors/chain_point.hpp"

@@ -4,6 +4,8 @@
 
 #include "kinecal/tools/cameras/camera_start.hpp"
 #include "kinecal/tools/cameras/lens_start.hpp"
+#include "kinecal/tools/cameras/single_camera.hpp"
+#include "kinecal/tools/cameras/start_cameras.hpp"
 #include "kinecal/tools/detect/board_turns.hpp"
 #include "kinecal/tools/detect/contact_sheet.hpp"
 #include "kinecal/tools/detect/detect.hpp"

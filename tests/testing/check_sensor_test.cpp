@@ -16,6 +16,7 @@ using testing::StartsWith;
 TEST(CheckSensor, HoldsForTheBuiltInSensorsAndThatOfAUser) {
   EXPECT_EQ(check_sensor(ChainPoint{}), kLawsHold);
   EXPECT_EQ(check_sensor(ChainPose{}), kLawsHold);
+  EXPECT_EQ(check_sensor(BentBoard{}), kLawsHold);
   EXPECT_EQ(check_sensor(DepthCamera{}), kLawsHold);
   EXPECT_EQ(check_sensor(PinholeCamera{}), kLawsHold);
   EXPECT_EQ(check_sensor(test::DrawWire{}), kLawsHold);

@@ -94,23 +94,24 @@ Robot with_own_frames(const Robot& robot, Config& config, std::span<const Sample
   return config.per_sample.empty() ? robot : Robot(robot.name(), std::move(joints));
 }
 
-Robot robot_of_cameras(const Config& config) {
-  std::vector<Joint> joints;
+std::string urdf_of_cameras(const Config& config) {
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\"?>\n<!-- Cameras on a body, and what they look at. -->\n"
+      "<robot name=\"cameras\">\n  <link name=\"{}\"/>\n",
+      config.base_link);
   std::set<std::string> links = {config.base_link};
   for (const ModelConfig& model : detail::models_of(config)) {
     if (!links.insert(model.frame).second) continue;
     const bool floats = std::any_of(config.per_sample.begin(), config.per_sample.end(),
                                     [&](const auto& frame) { return frame.name == model.frame; });
-    joints.push_back({floats ? model.frame : model.frame + "_joint",
-                      floats ? JointType::floating : JointType::fixed,
-                      config.base_link,
-                      model.frame,
-                      {},
-                      {},
-                      {},
-                      {}});
+    text += fmt::format(
+        "  <link name=\"{0}\"/>\n  <joint name=\"{1}\" type=\"{2}\">\n    <parent "
+        "link=\"{3}\"/>\n    <child link=\"{0}\"/>\n    <origin xyz=\"0 0 0\" rpy=\"0 0 "
+        "0\"/>\n  </joint>\n",
+        model.frame, floats ? model.frame : model.frame + "_joint", floats ? "floating" : "fixed",
+        config.base_link);
   }
-  return Robot("cameras", std::move(joints));
+  return text + "</robot>\n";
 }
 
 }  // namespace kinecal

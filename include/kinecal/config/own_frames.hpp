@@ -8,6 +8,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
@@ -22,8 +23,8 @@ namespace kinecal {
 [[nodiscard]] Robot with_own_frames(const Robot& robot, Config& config,
                                     std::span<const Sample> samples, Diagnostics& diagnostics);
 
-/// The robot of cameras without one: each link of a model that is not the base stands on the base by a fixed joint, "<link>_joint",
-/// or, where `per_sample` names the link, by a floating one of that name.
-[[nodiscard]] Robot robot_of_cameras(const Config& config);
+/// The URDF of cameras without a robot: each link of a model that is not the base stands on the base by a fixed joint,
+/// "<link>_joint", or, where `per_sample` names the link, by a floating one of that name.
+[[nodiscard]] std::string urdf_of_cameras(const Config& config);
 
 }  // namespace kinecal

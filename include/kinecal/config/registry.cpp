@@ -87,7 +87,8 @@ template <ErrorBlock B, class Make>
 Registry::Registry() {
   using detail::built_in_block;
   sensors_ = {detail::built_in_sensor<ChainPoint>(), detail::built_in_sensor<DepthCamera>(),
-              detail::camera_entry(), detail::built_in_sensor<ChainPose>()};
+              detail::camera_entry(), detail::built_in_sensor<ChainPose>(),
+              detail::built_in_sensor<BentBoard>()};
 
   const auto number = [](const BlockConfig& block, const char* key) {
     return block.numbers.at(key);

@@ -6,6 +6,7 @@
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/sensors/any_sensor.hpp"
+#include "kinecal/sensors/bent_board.hpp"
 #include "kinecal/sensors/chain_point.hpp"
 #include "kinecal/sensors/depth_camera.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
@@ -15,7 +16,7 @@ namespace kinecal {
 /// A sensor of a built-in type; configurations name it by its kType.
 using BuiltInSensor = std::variant<ChainPoint, DepthCamera, LensCamera<PlumbBob>,
                                    LensCamera<RationalPolynomial>, LensCamera<ThinPrism>,
-                                   LensCamera<Equidistant>, LensCamera<DoubleSphere>, ChainPose>;
+                                   LensCamera<Equidistant>, LensCamera<DoubleSphere>, BentBoard, ChainPose>;
 
 /// A camera by the name of its lens: lens_of() or lens_named().
 /// @throws std::invalid_argument  if there is no such lens
