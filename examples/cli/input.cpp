@@ -20,6 +20,7 @@
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/shell_word.hpp"
+#include "kinecal/tools/cameras/find_lenses.hpp"
 #include "kinecal/tools/cameras/start_cameras.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
 #include "progress.hpp"
@@ -175,6 +176,7 @@ Input read_input(const InputOptions& options) {
       add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
     }
     input.robot = with_own_frames(input.robot, input.config, input.samples, diagnostics);
+    find_lenses(input.config, input.robot, input.samples, diagnostics);
     start_cameras(input.config, input.robot, input.samples, diagnostics);
     choose_lenses(input.config, input.samples, diagnostics);
     choose_images(input.config, input.robot, input.samples, diagnostics);

@@ -293,7 +293,7 @@ void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samp
       }
       const std::array<double, 2> size = detail::size_of(info, views);
       const auto single = single_camera(views, size[0], size[1],
-                                        options_of(*pair.camera).lens);
+                                        detail::options_of(*pair.camera).lens);
       if (!single) {
         diagnostics.error(pair.camera->place,
                           fmt::format("camera '{}': no view of '{}' has four corners of a flat "

@@ -1,0 +1,202 @@
+// Definitions of find_lenses.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/tools/cameras/find_lenses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/choose_images.hpp"
+#include "kinecal/config/choose_lenses.hpp"
+#include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/config/parameters_from_config.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/solve/calibrate.hpp"
+#include "kinecal/tools/cameras/start_cameras.hpp"
+#include "kinecal/trust/folded_lens.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// A lens that was tried.
+struct TriedLens {
+  std::string name;
+  Config config;
+  std::vector<Sample> samples;
+  std::vector<double> squares;  ///< mean square of each sample while it was held out; 0: it has no residuals
+  std::string fault;            ///< why it is out; empty: it is not
+
+  /// Root of the mean of the squares, pixels.
+  [[nodiscard]] double error() const {
+    double sum = 0.0, count = 0.0;
+    for (const double square : squares) {
+      sum += square;
+      count += square > 0.0 ? 1.0 : 0.0;
+    }
+    return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+  }
+  /// True if its error is significantly smaller than that of another one.
+  [[nodiscard]] bool beats(const TriedLens& other) const {
+    double sum = 0.0, squared = 0.0, count = 0.0;
+    for (std::size_t s = 0; s < squares.size(); ++s) {
+      if (!(squares[s] > 0.0 && other.squares[s] > 0.0)) continue;
+      const double d = std::log(other.squares[s] / squares[s]);
+      sum += d;
+      squared += d * d;
+      count += 1.0;
+    }
+    if (count < 3.0) return false;
+    const double mean = sum / count, variance = squared / count - mean * mean;
+    constexpr double kSure = 2.0;  // standard errors
+    return mean > kSure * std::sqrt(std::max(0.0, variance) / (count - 1.0));
+  }
+};
+
+/// The configuration with a lens whose intrinsics are free.
+[[nodiscard]] Config with_lens(Config config, const ModelConfig& camera, const std::string& lens) {
+  const auto owned = [&](const std::string& lens_name) {
+    ModelConfig model = camera;
+    model.lens = lens_name;
+    std::set<std::string> names;
+    const std::shared_ptr<const AnySensor> sensor = sensor_of(model);
+    for (const ParameterInfo& info : sensor->parameters()) {
+      names.insert(parameter_name(camera.param_name, info.name));
+    }
+    return names;
+  };
+  std::set<std::string> others;
+  for (const std::string_view name : lens_names()) others.merge(owned(std::string(name)));
+  const std::set<std::string> own = owned(lens);
+  for (StepConfig& step : config.steps) {
+    bool has_camera = false;
+    for (ModelConfig& model : step.models) {
+      if (model.name != camera.name) continue;
+      has_camera = true;
+      model.lens = lens;
+      model.image = ImageKind::raw;
+    }
+    if (!has_camera) continue;
+    std::erase_if(step.free_params, [&](const auto& free) { return others.contains(free.name); });
+    for (const std::string& name : own) step.free_params.push_back({name, camera.place});
+  }
+  return config;
+}
+
+/// Mean square of each sample at some values; zero without residuals.
+void add_squares(const AnyProblem& problem, const Eigen::VectorXd& values,
+                 const std::vector<std::size_t>& numbers, std::vector<double>& squares) {
+  std::vector<double> sum(numbers.size(), 0.0), left(numbers.size(), 0.0);
+  const FreeSet none({}, problem.table().size());
+  (void)problem.evaluator(none, 1)->evaluate(
+      {values.data(), static_cast<std::size_t>(values.size())}, false,
+      [&](int t, int sample, const TermResiduals& rows) {
+        const auto s = static_cast<std::size_t>(sample);
+        sum[s] += (problem.term(t).weight * rows.factor.cwiseProduct(rows.residual)).squaredNorm();
+        left[s] += static_cast<double>(rows.residual.size()) - rows.used.sum();
+      });
+  for (std::size_t s = 0; s < numbers.size(); ++s) {
+    if (left[s] > 0.5) squares[numbers[s]] = 2.0 * sum[s] / left[s];  // of both coordinates
+  }
+}
+
+/// Calibrates a lens and predicts what was held out.
+void try_lens(const Robot& robot, TriedLens& lens) {
+  Diagnostics diagnostics;
+  start_cameras(lens.config, robot, lens.samples, diagnostics);
+  choose_lenses(lens.config, lens.samples, diagnostics);
+  choose_images(lens.config, robot, lens.samples, diagnostics);
+  const Calibration calibration = assemble(lens.config, robot, lens.samples, diagnostics);
+  if (!diagnostics.errors.empty()) {
+    lens.fault = diagnostics.errors.front();
+    return;
+  }
+  const CalibrationResult result = calibrate(calibration);
+  if (!result.converged) {
+    lens.fault = "does not fit";
+    return;
+  }
+  const Eigen::VectorXd solution = result.table.values();
+  const CalibrationStep& last = calibration.steps.back();
+  const std::vector<FoldedLens> folds =
+      folded_lenses(*last.problem, last.free,
+                    {solution.data(), static_cast<std::size_t>(solution.size())}, lens.samples);
+  if (!folds.empty()) {
+    lens.fault = fmt::format("folds over {:.0f} px from the center", folds.front().radius);
+    return;
+  }
+  constexpr std::size_t kFolds = 5;
+  lens.squares.assign(lens.samples.size(), 0.0);
+  const auto& poses = last.problem->poses_of_samples();
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    const auto fitted = last.problem->without_samples(), held_out = last.problem->without_samples();
+    std::vector<std::size_t> numbers;
+    std::vector<std::vector<Pose<double>>> of_fitted, of_held_out;
+    for (std::size_t s = 0; s < lens.samples.size(); ++s) {
+      const bool out = s % kFolds == fold;
+      (out ? held_out : fitted)->add_sample(lens.samples[s]);
+      if (!poses.empty()) (out ? of_held_out : of_fitted).push_back(poses[s]);
+      if (out) numbers.push_back(s);
+    }
+    fitted->set_poses_of_samples(of_fitted);
+    held_out->set_poses_of_samples(of_held_out);
+    Eigen::VectorXd values = solution;
+    constexpr double kEnough = 1e-8;  // of the cost
+    (void)solve(*fitted, last.free, values, {.function_tolerance = kEnough});
+    add_squares(*held_out, values, numbers, lens.squares);
+  }
+}
+
+/// "plumb_bob 22.7 px, equidistant 0.84 px, double_sphere: folds over"
+[[nodiscard]] std::string errors_text(const std::vector<TriedLens>& tried) {
+  std::string text;
+  for (const TriedLens& lens : tried) {
+    text += text.empty() ? "" : ", ";
+    text += lens.fault.empty() ? fmt::format("{} {:.4g} px", lens.name, lens.error())
+                               : fmt::format("{}: {}", lens.name, lens.fault);
+  }
+  return text;
+}
+
+}  // namespace
+}  // namespace detail
+
+void find_lenses(Config& config, const Robot& robot, std::vector<Sample>& samples,
+                 Diagnostics& diagnostics) {
+  for (const ModelConfig& camera : detail::models_of(config)) {
+    if (camera.lens != kAnyLens) continue;
+    std::vector<detail::TriedLens> tried;
+    for (const std::string_view lens : {DoubleSphere::kName, Equidistant::kName, PlumbBob::kName,
+                                        RationalPolynomial::kName, ThinPrism::kName}) {
+      const std::string name(lens);
+      tried.push_back({name, detail::with_lens(config, camera, name), samples, {}, {}});
+      detail::try_lens(robot, tried.back());
+    }
+    const auto fits = [](const detail::TriedLens& lens) { return lens.fault.empty(); };
+    const auto best = std::find_if(tried.begin(), tried.end(), [&](const detail::TriedLens& one) {
+      return fits(one) &&
+             std::none_of(tried.begin(), tried.end(), [&](const detail::TriedLens& other) {
+               return fits(other) && other.beats(one);
+             });
+    });
+    if (best == tried.end()) {
+      diagnostics.error(camera.place, fmt::format("sensor '{}': no lens fits: {}", camera.name,
+                                                  detail::errors_text(tried)));
+      continue;
+    }
+    diagnostics.note(camera.place,
+                     fmt::format("sensor '{}': lens by the error on views held out: {}: taken as {}",
+                                 camera.name, detail::errors_text(tried), best->name));
+    config = best->config;
+    samples = best->samples;
+  }
+}
+
+}  // namespace kinecal

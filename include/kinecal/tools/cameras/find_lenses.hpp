@@ -1,0 +1,28 @@
+// Chooses the lens of a camera by evidence (`lens: auto`): the simplest one whose error on views that were held out
+// no other lens beats significantly.
+//
+// Each lens is calibrated with all of its coefficients.  For each of five folds it is fitted to the other samples;
+// each sample that was held out gets the mean square m of its residuals, its own pose fitted to it.  One lens beats
+// another one if the mean of log(m / m') over samples exceeds two standard errors.  A lens that folds over inside the
+// image, or does not fit at all, is out.
+// Source: Vuong, Likelihood Ratio Tests for Model Selection and Non-Nested Hypotheses, 1989.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "kinecal/config/config.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal {
+
+/// Replaces `lens: auto` of each camera by a lens, whose intrinsics and coefficients it frees in each step that has the
+/// camera, and its D in the samples by that with which the search begins.  Notes the choice, with the errors.
+/// @param robot    with_own_frames()
+/// @param samples  as start_cameras() takes them
+void find_lenses(Config& config, const Robot& robot, std::vector<Sample>& samples,
+                 Diagnostics& diagnostics);
+
+}  // namespace kinecal
