@@ -89,6 +89,28 @@ int wrong(const Session& s, const Session& truth) {
   return count;
 }
 
+TEST(BoardFlips, GridsOfDiscsLookAlikeUnlessTheyAreAsymmetricWithAnOddNumberOfRows) {
+  const auto turns = [](int columns, int rows, bool asymmetric) {
+    return alike_board(CircleGridSettings{columns, rows, 0.02, asymmetric, {}}).turns;
+  };
+  EXPECT_EQ(turns(4, 11, true), 4);
+  EXPECT_EQ(turns(4, 10, true), 2);
+  EXPECT_EQ(turns(7, 6, false), 2);
+  EXPECT_EQ(turns(6, 6, false), 1);
+}
+
+TEST(BoardFlips, SymmetricGridsOfDiscsArePutRight) {
+  Session s =
+      session(7, 6, 20, CornerKind::pixels, 4);  // as a checkerboard, it would not look alike
+  const Session truth = s;
+  for (const std::size_t i : {1u, 4u, 5u, 11u}) turn(s, i, 2);
+  ASSERT_EQ(wrong(s, truth), 4);
+  const CircleGridSettings grid{7, 6, 0.03, false, s.board.target};
+  const Flips flips = resolve_flips(s.samples, alike_board(grid), s.links);
+  EXPECT_EQ(wrong(s, truth), 0);
+  EXPECT_TRUE(flips.undecided.empty());
+}
+
 TEST(BoardFlips, AllSamplesShowTheBoardTheSameWayRoundThoughNoMountIsKnown) {
   for (const CornerKind kind : {CornerKind::pixels, CornerKind::points}) {
     for (unsigned seed = 1; seed < 6; ++seed) {
@@ -96,7 +118,7 @@ TEST(BoardFlips, AllSamplesShowTheBoardTheSameWayRoundThoughNoMountIsKnown) {
       const Session truth = s;
       for (const std::size_t i : {1u, 4u, 5u, 11u, 13u, 17u, 19u}) turn(s, i, 2);
       EXPECT_GT(wrong(s, truth), 5);
-      const Flips flips = resolve_flips(s.samples, s.board, s.links);
+      const Flips flips = resolve_flips(s.samples, alike_board(s.board), s.links);
       EXPECT_EQ(wrong(s, truth), 0) << "seed " << seed;
       EXPECT_EQ(std::count(flips.quarter_turns.begin(), flips.quarter_turns.end(), 2), 7);
       EXPECT_TRUE(flips.undecided.empty());
@@ -108,14 +130,14 @@ TEST(BoardFlips, ASquareBoardWithAnEvenNumberOfCornersHasFourWays) {
   Session s = session(6, 6, 20, CornerKind::pixels, 9);
   const Session truth = s;
   for (std::size_t i = 0; i < 9; ++i) turn(s, 2 * i, static_cast<int>(i % 3) + 1);
-  (void)resolve_flips(s.samples, s.board, s.links);
+  (void)resolve_flips(s.samples, alike_board(s.board), s.links);
   EXPECT_EQ(wrong(s, truth), 0);
 }
 
 TEST(BoardFlips, WhatMostSamplesHaveStays) {
   Session s = session(7, 5, 9, CornerKind::pixels, 3);
   for (std::size_t i = 0; i < 8; ++i) turn(s, i, 2);
-  const Flips flips = resolve_flips(s.samples, s.board, s.links);
+  const Flips flips = resolve_flips(s.samples, alike_board(s.board), s.links);
   EXPECT_EQ(flips.quarter_turns, (std::vector<int>{0, 0, 0, 0, 0, 0, 0, 0, 2}));
 }
 
@@ -123,7 +145,7 @@ TEST(BoardFlips, ABoardWhoseColoursTellItIsNotTurned) {
   Session s = session(5, 4, 6, CornerKind::pixels, 3);
   turn(s, 2, 2);
   const Session before = s;
-  (void)resolve_flips(s.samples, s.board, s.links);
+  (void)resolve_flips(s.samples, alike_board(s.board), s.links);
   EXPECT_EQ(wrong(s, before), 0);
 }
 
@@ -131,9 +153,9 @@ TEST(BoardFlips, SamplesWithoutTheBoardAreLeftAlone) {
   Session s = session(7, 5, 6, CornerKind::pixels, 3);
   s.samples[1].observations.clear();
   s.samples[3].observations[0].features.pop_back();
-  const Flips flips = resolve_flips(s.samples, s.board, s.links);
+  const Flips flips = resolve_flips(s.samples, alike_board(s.board), s.links);
   EXPECT_EQ(flips.quarter_turns, std::vector<int>(6, 0));
-  EXPECT_THROW(resolve_flips(s.samples, s.board, std::vector<Pose<double>>(2)),
+  EXPECT_THROW(resolve_flips(s.samples, alike_board(s.board), std::vector<Pose<double>>(2)),
                std::invalid_argument);
 }
 
@@ -145,7 +167,7 @@ TEST(BoardFlips, TwoSamplesOfAnArmThatOnlyTurnedAboutTheBoardsNormalByAQuarterAr
   quarter.rotation =
       Eigen::AngleAxisd(std::numbers::pi / 2, Vector3<double>::UnitZ()).toRotationMatrix();
   s.links[1] = s.links[0] * quarter;
-  EXPECT_FALSE(resolve_flips(s.samples, s.board, s.links).undecided.empty());
+  EXPECT_FALSE(resolve_flips(s.samples, alike_board(s.board), s.links).undecided.empty());
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST(ShrunkBlack, LargeImagesAreSearchedAtReducedSizeFirst) {
   EXPECT_EQ(small[1], 1.5);
   const std::vector<double> large = detail::search_scales(GrayImage(4000, 3000));
   EXPECT_NEAR(large.front() * large.front() * 12e6, 1.5e6, 1.0);
-  EXPECT_GE(large.back(), 1.0);
+  EXPECT_NEAR(large.back(), 0.795, 0.001) << "larger ones take seconds";
 }
 
 #ifdef KINECAL_HAVE_APRILTAG

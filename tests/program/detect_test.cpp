@@ -82,6 +82,11 @@ TEST_F(Detect, ABoardThatLooksTheSameWhenTurnedIsAWarning) {
   EXPECT_THAT(detect().err, HasSubstr("a board of 6x4 corners looks the same when it is turned"));
   write("photos/capture.yaml", "features:\n  board:\n    " + board + "5\n");
   EXPECT_THAT(detect().err, testing::Not(HasSubstr("looks the same")));
+  const std::string discs = "type: CircleGridFinder2d\n    points_x: 4\n    points_y: ";
+  write("photos/capture.yaml", "features:\n  discs:\n    " + discs + "10\n");
+  EXPECT_THAT(detect().err, HasSubstr("a grid of 4x10 discs looks the same when it is turned"));
+  write("photos/capture.yaml", "features:\n  discs:\n    " + discs + "11\n");
+  EXPECT_THAT(detect().err, testing::Not(HasSubstr("looks the same")));
 }
 
 TEST_F(Detect, ATableWithFewerRowsThanImagesNamesTheImages) {

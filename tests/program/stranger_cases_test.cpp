@@ -4,11 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <string>
 
+#include "kinecal/capture/square_edges.hpp"
+#include "kinecal/files/images/png_bytes.hpp"
+#include "kinecal/files/images/read_image.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"
 #include "support/run_program.hpp"
@@ -189,6 +194,54 @@ TEST_F(StrangerCases, TagsWithAnotherBorderAreNamed) {
   if (result.err.find("without libapriltag") != std::string::npos) GTEST_SKIP() << result.err;
   EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.err, HasSubstr("tags with a border of 2 bits are seen: write border: 2"));
+}
+
+/// An image turned about its middle, larger so that all of it is to be seen.
+[[nodiscard]] GrayImage turned_image(const GrayImage& image, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const int side = static_cast<int>(std::ceil(std::abs(c) * std::max(image.width, image.height) +
+                                              std::abs(s) * std::max(image.width, image.height)));
+  GrayImage turned(side, side);
+  const Eigen::Vector2d middle(0.5 * (image.width - 1), 0.5 * (image.height - 1));
+  for (int v = 0; v < side; ++v) {
+    for (int u = 0; u < side; ++u) {
+      const double x = u - 0.5 * (side - 1), y = v - 0.5 * (side - 1);
+      const Eigen::Vector2d from(c * x + s * y, c * y - s * x);
+      turned(u, v) = static_cast<std::uint8_t>(std::lround(brightness_at(image, middle + from)));
+    }
+  }
+  return turned;
+}
+
+TEST_F(StrangerCases, KalibrsGridInAFisheyePhotographIsFoundTurnedByAnyAngle) {
+  KINECAL_NEEDS_STRANGER(of, "cap-02-kalibr-grid-recall");
+  const GrayImage photograph = read_image((of / "TUM_VI.png").string());
+  write("c.yaml",
+        "features:\n  tags: {type: AprilTagFinder2d, frame_id: board, columns: 6, rows: 6, size: "
+        "0.088, spacing: 0.3, border: 2}\n");
+  for (const int degrees : {0, 30, 45, 90, 135}) {
+    const GrayImage image = turned_image(photograph, degrees * std::numbers::pi / 180.0);
+    const std::string side = std::to_string(image.width), half = std::to_string(image.width / 2);
+    fs::create_directories(folder_ / "i");
+    write("i/photograph.png", detail::png_bytes(image));
+    write("p.csv", "image,q\nphotograph.png,0\n");
+    write("cam.yaml", "image_width: " + side + "\nimage_height: " + side +
+                          "\ncamera_matrix: {rows: 3, cols: 3, data: [" + side + ", 0, " + half +
+                          ", 0, " + side + ", " + half +
+                          ", 0, 0, 1]}\ndistortion_model: plumb_bob\n"
+                          "distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\n");
+    const test::Outcome result = kinecal(
+        "detect c.yaml --images i --poses p.csv --camera cam.yaml --frame cam -o s.yaml --force");
+    if (result.err.find("without libapriltag") != std::string::npos) GTEST_SKIP() << result.err;
+    EXPECT_EQ(result.code, 0) << degrees << ": " << result.err;
+    const std::string all = read("s.yaml");
+    std::size_t corners = 0;
+    for (std::size_t at = all.find("frame_id: cam"); at != std::string::npos;
+         at = all.find("frame_id: cam", at + 1)) {
+      ++corners;
+    }
+    EXPECT_GE(corners, 136u) << "of 144 at " << degrees << " degrees";
+  }
 }
 
 TEST_F(StrangerCases, TheColumnsOfPhotographsNeedNoObservations) {

@@ -29,11 +29,11 @@ namespace {
 
 /// camera_T_board of a whole board with ordered corners; nullopt if it cannot be computed.
 [[nodiscard]] std::optional<Pose<double>> board_pose(const Sample& sample,
-                                                     const CheckerboardSettings& board) {
+                                                     const AlikeBoard& board) {
   const Observation* camera = sample.observation(board.target.camera_sensor);
   const Observation* chain = sample.observation(board.target.chain_sensor);
   const auto corners =
-      static_cast<std::size_t>(board.points_x) * static_cast<std::size_t>(board.points_y);
+      static_cast<std::size_t>(board.columns) * static_cast<std::size_t>(board.rows);
   if (!camera || !chain || camera->features.size() != corners ||
       chain->features.size() != corners || chain->features[0].frame != board.target.frame) {
     return std::nullopt;
@@ -55,9 +55,9 @@ namespace {
 }
 
 /// Renumbers a camera's corners as if the board were rotated back.
-void turn_board(Observation& camera, const CheckerboardSettings& board, int turns) {
+void turn_board(Observation& camera, const AlikeBoard& board, int turns) {
   const std::vector<Feature> seen = camera.features;
-  const auto order = turned_order(board.points_x, board.points_y, turns);
+  const auto order = turned_order(board.columns, board.rows, turns);
   for (std::size_t i = 0; i < order.size(); ++i) {
     camera.features[i] = seen[order[i]];
     camera.features[i].id = static_cast<int>(i);
@@ -67,7 +67,16 @@ void turn_board(Observation& camera, const CheckerboardSettings& board, int turn
 }  // namespace
 }  // namespace detail
 
-Flips resolve_flips(std::span<Sample> samples, const CheckerboardSettings& board,
+AlikeBoard alike_board(const CheckerboardSettings& board) {
+  return {board.points_x, board.points_y, turns_alike(board.points_x, board.points_y),
+          board.target};
+}
+
+AlikeBoard alike_board(const CircleGridSettings& grid) {
+  return {grid.points_x, grid.points_y, turns_alike(grid), grid.target};
+}
+
+Flips resolve_flips(std::span<Sample> samples, const AlikeBoard& board,
                     std::span<const Pose<double>> board_T_camera_link) {
   if (samples.size() != board_T_camera_link.size()) {
     throw std::invalid_argument("resolve_flips needs a pose of each sample, has " +
@@ -75,8 +84,7 @@ Flips resolve_flips(std::span<Sample> samples, const CheckerboardSettings& board
                                 std::to_string(samples.size()) + " samples");
   }
   Flips flips{std::vector<int>(samples.size(), 0), {}};
-  const int step = turns_alike(board.points_x, board.points_y);
-  if (step == 4) return flips;
+  if (board.turns == 4) return flips;
   std::vector<std::size_t> whole;
   std::vector<Matrix3<double>> links, boards;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -86,7 +94,7 @@ Flips resolve_flips(std::span<Sample> samples, const CheckerboardSettings& board
     links.push_back(board_T_camera_link[i].rotation);
     boards.push_back(pose->rotation);
   }
-  const detail::AgreedTurns agreed = detail::agreed_turns(links, boards, step);
+  const detail::AgreedTurns agreed = detail::agreed_turns(links, boards, board.turns);
   for (std::size_t k = 0; k < whole.size(); ++k) {
     const int turns = agreed.turns[k];
     flips.quarter_turns[whole[k]] = turns;

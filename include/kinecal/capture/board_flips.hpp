@@ -18,10 +18,24 @@
 #include <vector>
 
 #include "kinecal/capture/checkerboard_finder.hpp"
+#include "kinecal/capture/circle_grid_finder.hpp"
 #include "kinecal/geometry/pose.hpp"
 #include "kinecal/kinematics/robot.hpp"
 
 namespace kinecal {
+
+/// A board that may look the same when rotated.
+struct AlikeBoard {
+  int columns = 0, rows = 0;  ///< of corners, or of the centres of discs
+  int turns = 4;  ///< quarter turns after which it looks the same: 1, 2; 4 if it does not
+  TargetSettings target = {};
+};
+
+/// A checkerboard as such a board.
+[[nodiscard]] AlikeBoard alike_board(const CheckerboardSettings& board);
+
+/// A grid of discs as such a board.
+[[nodiscard]] AlikeBoard alike_board(const CircleGridSettings& grid);
 
 /// Rotations of boards.
 struct Flips {
@@ -37,7 +51,7 @@ struct Flips {
 /// board,
 ///                            from the joints
 /// @throws std::invalid_argument  if the numbers of poses and samples differ
-Flips resolve_flips(std::span<Sample> samples, const CheckerboardSettings& board,
+Flips resolve_flips(std::span<Sample> samples, const AlikeBoard& board,
                     std::span<const Pose<double>> board_T_camera_link);
 
 /// Poses of one link in another, from the joints of each sample and a nominal robot.

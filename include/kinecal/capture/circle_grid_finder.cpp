@@ -115,8 +115,9 @@ namespace {
 }  // namespace
 }  // namespace detail
 
-bool looks_alike_rotated(const CircleGridSettings& grid) {
-  return !grid.asymmetric || grid.points_y % 2 == 0;
+int turns_alike(const CircleGridSettings& grid) {
+  if (grid.asymmetric) return grid.points_y % 2 == 0 ? 2 : 4;
+  return grid.points_x == grid.points_y ? 1 : 2;
 }
 
 CircleGridFinder::CircleGridFinder(CircleGridSettings settings) : settings_(std::move(settings)) {
@@ -129,7 +130,7 @@ CircleGridFinder::CircleGridFinder(CircleGridSettings settings) : settings_(std:
                                 std::to_string(settings_.size) + " m");
   }
   check_target(settings_.target);
-  if (settings_.target.corners == CornerKind::pose && looks_alike_rotated(settings_)) {
+  if (settings_.target.corners == CornerKind::pose && turns_alike(settings_) < 4) {
     throw std::invalid_argument(
         grid +
         " looks the same when rotated, so it has no pose of its own: take its "

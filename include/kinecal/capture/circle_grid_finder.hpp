@@ -7,7 +7,7 @@
 //   asymmetric  ((2 column + row mod 2) size, row size, 0)
 // An asymmetric grid with an odd number of rows looks different from every side.  Others look the same when
 // rotated by half a turn (symmetric ones of as many columns as rows: a quarter): x is then what points most
-// to the image's right, so keep the grid upright.
+// to the image's right, and they need resolve_flips() (board_flips.hpp) after the session.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -25,8 +25,8 @@ struct CircleGridSettings {
   TargetSettings target = {};  ///< its sensors, and requirements on its image
 };
 
-/// True if a grid looks the same when rotated.
-[[nodiscard]] bool looks_alike_rotated(const CircleGridSettings& grid);
+/// The smallest number of quarter turns after which a grid looks the same: 1, 2, or 4.
+[[nodiscard]] int turns_alike(const CircleGridSettings& grid);
 
 /// Finds one complete grid of discs, with their centres corrected for perspective.  Needs OpenCV.
 class CircleGridFinder {

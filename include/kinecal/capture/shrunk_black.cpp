@@ -10,11 +10,14 @@
 namespace kinecal::detail {
 
 std::vector<double> search_scales(const GrayImage& image) {
-  constexpr double kFirstPixels = 1.5e6, kStep = 1.5, kMost = 1.5;
+  constexpr double kFirstPixels = 1.5e6, kMostPixels = 8e6, kStep = 1.5, kMost = 1.5;
   const double pixels = static_cast<double>(image.width) * image.height;
   std::vector<double> scales = {std::min(1.0, std::sqrt(kFirstPixels / pixels))};
-  while (scales.back() * kStep <= kMost) scales.push_back(scales.back() * kStep);
-  return scales;
+  while (true) {
+    const double next = scales.back() * kStep;
+    if (next > kMost || next * next * pixels > kMostPixels) return scales;
+    scales.push_back(next);
+  }
 }
 
 namespace {

@@ -13,7 +13,7 @@
 namespace kinecal::detail {
 
 /// Sizes at which to search an image, of its own: first with at most 1.5 megapixels, then larger ones,
-/// which take longer and show smaller tags, up to 1.5.
+/// which take longer and show smaller tags, up to 1.5 or 8 megapixels.
 [[nodiscard]] std::vector<double> search_scales(const GrayImage& image);
 
 /// An image at another size, in which white has grown by a pixel.

@@ -7,7 +7,6 @@
 #include <variant>
 
 #include "kinecal/capture/board_flips.hpp"
-#include "kinecal/capture/board_order.hpp"
 #include "kinecal/text/counted.hpp"
 
 namespace kinecal {
@@ -32,10 +31,30 @@ namespace {
   return robot.has_link(other) ? other : "";
 }
 
-[[nodiscard]] std::string alike_text(const CaptureFinder& finder,
-                                     const CheckerboardSettings& board) {
-  return fmt::format("finder '{}': a board of {}x{} corners looks the same when it is turned",
-                     finder.name, board.points_x, board.points_y);
+[[nodiscard]] std::string alike_text(const CaptureFinder& finder, const AlikeBoard& board) {
+  const bool has_discs = std::holds_alternative<CircleGridSettings>(finder.settings);
+  return fmt::format("finder '{}': a {} of {}x{} {} looks the same when it is turned", finder.name,
+                     has_discs ? "grid" : "board", board.columns, board.rows,
+                     has_discs ? "discs" : "corners");
+}
+
+/// The board of a finder, if it looks the same when it is turned.
+[[nodiscard]] std::optional<AlikeBoard> board_alike(const FinderSettings& settings) {
+  constexpr int kFullTurn = 4;  // quarters
+  std::optional<AlikeBoard> board;
+  if (const auto* squares = std::get_if<CheckerboardSettings>(&settings)) {
+    board = alike_board(*squares);
+  } else if (const auto* discs = std::get_if<CircleGridSettings>(&settings)) {
+    board = alike_board(*discs);
+  }
+  return board && board->turns < kFullTurn ? board : std::nullopt;
+}
+
+/// Which boards do not look the same.
+[[nodiscard]] std::string better_board(const FinderSettings& settings) {
+  return std::holds_alternative<CircleGridSettings>(settings)
+             ? "an asymmetric grid of which points_y is odd"
+             : "a board of which points_x + points_y is odd";
 }
 
 /// What was turned, in words.
@@ -72,10 +91,9 @@ void report_turns(const CaptureFinder& finder, const Flips& flips,
 
 void turn_boards(const std::vector<CaptureFinder>& finders, const std::optional<Robot>& robot,
                  const BoardLinks& links, std::vector<Sample>& samples, Diagnostics& diagnostics) {
-  constexpr int kFullTurn = 4;  // quarters
   for (const CaptureFinder& finder : finders) {
-    const auto* board = std::get_if<CheckerboardSettings>(&finder.settings);
-    if (board == nullptr || turns_alike(board->points_x, board->points_y) == kFullTurn) continue;
+    const std::optional<AlikeBoard> board = detail::board_alike(finder.settings);
+    if (!board) continue;
     std::string in, link;
     if (robot) {
       in = detail::link_among(*robot, links.board, board->target.frame);
@@ -89,7 +107,8 @@ void turn_boards(const std::vector<CaptureFinder>& finders, const std::optional<
               "; x is taken as the direction nearest to the image's right. Give --urdf, "
               "--board-link "
               "and --camera-link to have turned boards put right, leave out images in which it is "
-              "turned further, or use a board of which points_x + points_y is odd");
+              "turned further, or use " +
+              detail::better_board(finder.settings));
       continue;
     }
     try {
