@@ -68,7 +68,8 @@ rotation_names() {
   }
   pose.indices.clear();
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
-    if (table.columns()[c].is_number) pose.indices.push_back(static_cast<int>(c));
+    const TableColumn& column = table.columns()[c];
+    if (column.is_number && column.name != "image") pose.indices.push_back(static_cast<int>(c));
   }
   const std::size_t count = pose.indices.size();
   if (given.empty() && (count == 12 || count == 16)) pose.form = "matrix";
