@@ -35,7 +35,7 @@ rotation_names() {
         {"orientationx", "orientationy", "orientationz", "orientationw"},
         {"rotationx", "rotationy", "rotationz", "rotationw"}}},
       {"quaternion_wxyz", {{"q1", "q2", "q3", "q4"}, {"q0", "q1", "q2", "q3"}}},
-      {"rpy", {{"roll", "pitch", "yaw"}, {"r", "p", "y"}}},
+      {"rpy", {{"roll", "pitch", "yaw"}}},
       {"rotation_vector", {{"rx", "ry", "rz"}, {"rvecx", "rvecy", "rvecz"}}},
       {"kuka", {{"a", "b", "c"}}},
       {"fanuc", {{"w", "p", "r"}}}};
