@@ -10,8 +10,8 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/files/csv/read_csv_samples.hpp"
+#include "kinecal/files/poses/pose_table.hpp"
 #include "kinecal/files/results/file_set.hpp"
-#include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/shell_word.hpp"
@@ -92,7 +92,7 @@ int init_hand_eye(const InitOptions& options) {
   const CsvMapping mapping =
       read_csv_mapping(columns, diagnostics, has_corners ? CsvUse::samples : CsvUse::joints);
   const std::vector<Sample> samples =
-      csv_samples(detail::read_text_file(options.poses), mapping, options.poses, diagnostics);
+      csv_samples(read_pose_table(options.poses), mapping, options.poses, diagnostics);
   print_or_throw(diagnostics);
   write_text_file(urdf, urdf_text);
   write_text_file(options.output, config);

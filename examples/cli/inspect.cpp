@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <vector>
 
 #include "commands.hpp"
 #include "input.hpp"
@@ -12,6 +13,7 @@
 #include "kinecal/files/recordings/pose_messages.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/text/reading.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {
@@ -73,6 +75,32 @@ void print_joints(const std::vector<Sample>& samples) {
                fmt::format("{:.4f}", range.upper - range.lower)});
   }
   say("Joints (radians or metres)\n{}\n", table.str());
+}
+
+/// Prints how far the measured poses of floating joints are apart.
+void print_measured_poses(const std::vector<Sample>& samples) {
+  std::map<std::string, std::vector<const Pose<double>*>> all;
+  for (const Sample& sample : samples) {
+    for (const auto& [joint, pose] : sample.poses) all[joint].push_back(&pose);
+  }
+  if (all.empty()) return;
+  TextTable table({"floating joint", "samples", "x", "y", "z", "turned by"});
+  for (const auto& [joint, poses] : all) {
+    Vector3<double> least = poses.front()->translation, most = least;
+    double turned = 0.0;
+    for (const Pose<double>* pose : poses) {
+      least = least.cwiseMin(pose->translation);
+      most = most.cwiseMax(pose->translation);
+      const Matrix3<double> turn = poses.front()->rotation.transpose() * pose->rotation;
+      turned = std::max(turned, log(turn).norm());
+    }
+    const Vector3<double> range = most - least;
+    table.add({joint, fmt::format("{}", poses.size()), fmt::format("{:.4f}", range.x()),
+               fmt::format("{:.4f}", range.y()), fmt::format("{:.4f}", range.z()),
+               reading(turned, "rad")});
+  }
+  say("Measured poses: their ranges, metres, and how far they turn from the first\n{}\n",
+      table.str());
 }
 
 void print_sensors(const std::vector<Sample>& samples) {
@@ -190,6 +218,7 @@ int inspect(const std::vector<std::string>& files) {
   if (used.empty()) return kDone;
   say("{}\n\n", counted(samples.size(), "sample"));
   print_joints(samples);
+  print_measured_poses(samples);
   print_sensors(samples);
   print_gaps(samples);
   return kDone;

@@ -28,7 +28,8 @@ Config with_possible_movers(const StoredResult& result) {
   Config config = result.config;
   StepConfig& step = config.steps.back();
   for (const Joint* joint : detail::joints_between(config, result.robot)) {
-    if (joint->mimic) continue;  // the joint that it follows is there as well
+    if (joint->mimic) continue;                        // the joint that it follows is there as well
+    if (joint->type == JointType::floating) continue;  // its pose is measured
     if (moves(joint->type)) {
       const auto free = free_parameters(step);
       const auto same = [&](const FreeParamConfig& param) { return param.name == joint->name; };

@@ -35,6 +35,7 @@
 #include "kinecal/files/messages/view_message.hpp"
 #include "kinecal/files/natural_order.hpp"
 #include "kinecal/files/poses/pose_numbers.hpp"
+#include "kinecal/files/poses/pose_table.hpp"
 #include "kinecal/files/poses/poses.hpp"
 #include "kinecal/files/recordings/bag_output.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"

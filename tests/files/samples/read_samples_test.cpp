@@ -476,7 +476,7 @@ TEST(ReadSamples, ASampleMayHaveMeasuredPosesOfFloatingJoints) {
                {"pose of 'flange'", "a unit quaternion has length 1, not 1.41"});
   expect_error(with("{flange: {xyz: [589, 2, 3], " + good + "}}"), 2,
                {"pose of 'flange'", "it looks like millimetres; write metres"});
-  expect_error(with("{flange: {" + good + "}}"), 2, {"without 'xyz'"});
+  expect_error(with("{flange: {" + good + "}}"), 2, {"pose of 'flange'", "xyz has 0 numbers"});
   expect_error(with("{a: {xyz: [0, 0, 0], " + good + "}, a: {xyz: [0, 0, 0], " + good + "}}"), 2,
                {"poses: 'a' occurs twice"});
 }

@@ -107,6 +107,26 @@ TEST_F(ImageFolderTest, ColumnsOfAFileMayBeInDegrees) {
   EXPECT_DOUBLE_EQ(images[0].joints.positions[0], std::numbers::pi);
 }
 
+TEST_F(ImageFolderTest, PosesMayBeInATextFileForEachImage) {
+  std::filesystem::create_directories(path("poses"));
+  write("poses/a.txt", "1 0 0 0.5\n0 0 -1 0.1\n0 1 0 0.3\n");
+  write("poses/b.txt", "[1, 0, 0, 0.7],\n[0, 1, 0, 0.1],\n[0, 0, 1, 0.3]\n");
+  write("columns.yaml",
+        "poses:\n  flange: {form: matrix, columns: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, "
+        "11, 12]}\n");
+  const ImageFolder folder{path("images"), path("poses"), path("columns.yaml"), ""};
+  const auto images = list_images(folder, diagnostics_);
+  EXPECT_THAT(diagnostics_.errors, testing::IsEmpty());
+  ASSERT_EQ(images.size(), 2u);
+  EXPECT_EQ(images[0].path, path("images/a.png"));
+  EXPECT_EQ(images[0].joints.poses.at("flange").translation, Vector3<double>(0.5, 0.1, 0.3));
+  EXPECT_EQ(images[0].joints.poses.at("flange").rotation(1, 2), -1.0);
+  EXPECT_EQ(images[1].joints.poses.at("flange").translation.x(), 0.7);
+  write("poses/b.txt", "1 2 3\n");
+  EXPECT_THAT(error_of([&] { (void)list_images(folder, diagnostics_); }),
+              HasSubstr("b.txt: has 3 numbers, but a.txt has 12"));
+}
+
 TEST_F(ImageFolderTest, EveryRowNeedsItsImageAndEveryImageItsRow) {
   (void)list("image,q1\na.png,1\na.png,2\nc.png,3\n");
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr(":3: image 'a.png' has a row already"),

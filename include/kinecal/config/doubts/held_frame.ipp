@@ -30,6 +30,7 @@ namespace kinecal::detail {
   StepConfig& step = config.steps.back();
   constexpr std::array<bool, 6> kAll = {true, true, true, true, true, true};
   for (const Joint* joint : joints) {
+    if (joint->type == JointType::floating) continue;  // its pose is measured
     const auto known =
         std::find_if(step.free_frames.begin(), step.free_frames.end(),
                      [&](const FreeFrameConfig& frame) { return frame.name == joint->name; });

@@ -111,7 +111,9 @@ std::vector<OutputFile> result_files(const Robot& robot, const std::string& urdf
   files.push_back(
       {urdf, patch_urdf(urdf_text, urdf_name, robot,
                         joint_patches(robot, result.table, options.in_servos), options.offsets)});
-  for (OutputFile& file : transform_files(robot, result.table)) files.push_back(std::move(file));
+  for (OutputFile& file : transform_files(robot, result.table, samples)) {
+    files.push_back(std::move(file));
+  }
   std::string references;
   const auto refer = [&](const std::string& kind, const std::string& camera,
                          const std::string& file) {

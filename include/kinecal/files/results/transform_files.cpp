@@ -112,18 +112,22 @@ template <class Word>
 }  // namespace
 }  // namespace detail
 
-std::vector<OutputFile> transform_files(const Robot& robot, const ParameterTable& table) {
-  const auto floating = std::find_if(robot.joints().begin(), robot.joints().end(),
-                                     [](const Joint& j) { return j.type == JointType::floating; });
+std::vector<OutputFile> transform_files(const Robot& robot, const ParameterTable& table,
+                                        std::span<const Sample> samples) {
+  const auto is_measured = [&](const Joint& joint) {
+    return joint.type == JointType::floating &&
+           std::any_of(samples.begin(), samples.end(),
+                       [&](const Sample& sample) { return sample.poses.contains(joint.name); });
+  };
+  const auto floating = std::find_if(robot.joints().begin(), robot.joints().end(), is_measured);
   if (floating == robot.joints().end()) return {};
   std::vector<OutputFile> files;
   for (const JointPatch& patch : joint_patches(robot, table)) {
     const Joint& joint = robot.joint(patch.joint);
     if (joint.type != JointType::fixed) continue;
     const std::vector<const Joint*> above = joints_to_root(robot, joint.parent);
-    const bool on_hand = std::any_of(above.begin(), above.end(), [](const Joint* one) {
-      return one->type == JointType::floating;
-    });
+    const bool on_hand = std::any_of(above.begin(), above.end(),
+                                     [&](const Joint* one) { return one->name == floating->name; });
     const detail::CalibratedMount mount{&joint, joint.origin * patch.correction, on_hand,
                                         &*floating};
     std::string stem = joint.name;

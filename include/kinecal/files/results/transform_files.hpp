@@ -8,19 +8,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "kinecal/files/results/output_file.hpp"
 #include "kinecal/kinematics/robot.hpp"
+#include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
 
 class ParameterTable;
 
-/// The files of each calibrated fixed joint of a robot with a floating joint: of hand-eye
-/// calibrations.  Other robots get none: their URDF has it all.
+/// The files of each calibrated fixed joint, if the samples have measured poses of a floating joint: of
+/// hand-eye calibrations.  Others get none: their URDF has it all.
 /// @param robot  before the calibration
 [[nodiscard]] std::vector<OutputFile> transform_files(const Robot& robot,
-                                                      const ParameterTable& table);
+                                                      const ParameterTable& table,
+                                                      std::span<const Sample> samples);
 
 }  // namespace kinecal

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
 #include <string>
 #include <vector>
 
@@ -24,9 +22,9 @@ class SamplePose {
   /// The pose of the numbers.
   /// @returns  what is wrong with them; empty: nothing
   [[nodiscard]] std::string read(Pose<double>& pose) const {
-    if (xyz_.size() != 3 || xyzw_.size() != 4) {
-      return fmt::format("xyz has {}, not 3; quaternion_xyzw has {}, not 4",
-                         counted(xyz_.size(), "number"), counted(xyzw_.size(), "number"));
+    if (xyz_.size() != 3) return "xyz has " + counted(xyz_.size(), "number") + ", not 3";
+    if (xyzw_.size() != 4) {
+      return "quaternion_xyzw has " + counted(xyzw_.size(), "number") + ", not 4";
     }
     pose.translation = Vector3<double>::Map(xyz_.data());
     const Eigen::Vector4d quaternion = Eigen::Vector4d::Map(xyzw_.data());

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
-#include <set>
 #include <system_error>
 #include <utility>
 
@@ -13,9 +11,9 @@
 #include "kinecal/files/csv/read_csv_samples.hpp"
 #include "kinecal/files/images/read_image.hpp"
 #include "kinecal/files/natural_order.hpp"
-#include "kinecal/files/text_file.hpp"
-#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/files/poses/pose_table.hpp"
 #include "kinecal/text/printable.hpp"
+#include "kinecal/tools/detect/image_rows.ipp"
 
 namespace kinecal {
 namespace detail {
@@ -84,42 +82,6 @@ namespace {
   return mapping;
 }
 
-/// Assigns images to rows.
-/// @param image  column of their names; nullopt: the order of their names
-/// @return       by the source of each row
-[[nodiscard]] std::map<std::string, std::string> images_of_rows(
-    const std::vector<CsvRow>& rows, bool header, std::optional<std::size_t> image,
-    const ImageFolder& folder, const std::vector<std::string>& names, Diagnostics& diagnostics) {
-  std::map<std::string, std::string> result;
-  std::set<std::string> used;
-  const std::size_t first = header ? 1 : 0;
-  for (std::size_t i = first; i < rows.size(); ++i) {
-    const SourceLocation place{folder.table, rows[i].line};
-    std::string name;
-    if (image && *image < rows[i].cells.size()) name = rows[i].cells[*image];
-    if (!image && i - first < names.size()) name = names[i - first];
-    const std::string file = std::filesystem::path(name).filename().string();
-    if (!image && name.empty()) {
-      diagnostics.error(place, "there is no image for this row: the table has " +
-                                   std::to_string(rows.size() - first) + " rows, " + folder.images +
-                                   " has " + std::to_string(names.size()) + " images");
-    } else if (!std::binary_search(names.begin(), names.end(), file, file_naturally_before)) {
-      diagnostics.error(place, "image '" + printable(name) + "' is not in " + folder.images +
-                                   did_you_mean(file, names));
-    } else if (!used.insert(file).second) {
-      diagnostics.error(place, "image '" + printable(name) + "' has a row already");
-    } else {
-      result[place.str()] = file;
-    }
-  }
-  for (const std::string& name : names) {
-    if (used.count(name) > 0) continue;
-    diagnostics.error({folder.table, 0},
-                      "has no row for image " + printable(name) + " of " + folder.images);
-  }
-  return result;
-}
-
 /// The depth image of an image: the same name, with extension .png.
 [[nodiscard]] std::string depth_of(const ImageFolder& folder, const std::string& image,
                                    const std::string& source, Diagnostics& diagnostics) {
@@ -141,14 +103,21 @@ std::vector<PosedImage> list_images(const ImageFolder& folder, Diagnostics& diag
   if (!folder.depth.empty() && !std::filesystem::is_directory(folder.depth)) {
     throw InputError(folder.depth + ": is not a folder with images of depth");
   }
-  const std::string text = detail::read_text_file(folder.table);
+  const bool of_files = is_pose_folder(folder.table);
+  const std::string text = read_pose_table(folder.table);
   CsvMapping mapping;
   if (!folder.columns.empty()) {
     mapping = read_csv_mapping(folder.columns, diagnostics, CsvUse::joints);
   }
+  if (of_files && folder.columns.empty()) {
+    throw InputError(folder.table +
+                     ": poses in text files need --columns, which says what their "
+                     "numbers are; 'kinecal init --poses' writes it");
+  }
+  if (of_files) mapping.separator = ',', mapping.header = true;
   const char separator = folder.columns.empty() ? detail::separator_of(text) : mapping.separator;
   Diagnostics repeated;  // csv_samples() reports them again
-  const auto rows = detail::csv_rows(text, separator, folder.table, repeated);
+  auto rows = detail::csv_rows(text, separator, folder.table, repeated);
   const bool header = folder.columns.empty() || mapping.header;
   const auto image = header ? detail::image_column(rows) : std::nullopt;
   if (folder.columns.empty()) {
@@ -157,6 +126,7 @@ std::vector<PosedImage> list_images(const ImageFolder& folder, Diagnostics& diag
   if (!diagnostics.errors.empty()) return {};
   const std::vector<Sample> samples = csv_samples(text, mapping, folder.table, diagnostics);
   if (rows.size() < (header ? 2U : 1U)) return {};  // an error: no image has a row
+  if (of_files) detail::complete_names(names, rows);
   const auto images = detail::images_of_rows(rows, header, image, folder, names, diagnostics);
   std::vector<PosedImage> result;
   for (const Sample& sample : samples) {

@@ -19,7 +19,8 @@ namespace kinecal {
 /// Location of photographs.
 struct ImageFolder {
   std::string images;   ///< folder of PNG, JPEG, BMP or TIFF files
-  std::string table;    ///< of joint positions, CSV
+  std::string table;    ///< of joint positions, CSV; or a folder with a pose for each image, see
+                        ///< files/poses/pose_table.hpp
   std::string columns;  ///< meaning of its columns; empty: each is a joint, except `image`
   std::string depth;    ///< folder of depth images, same names except the extension; empty: none
 };

@@ -35,7 +35,7 @@ rotation_names() {
         {"orientationx", "orientationy", "orientationz", "orientationw"},
         {"rotationx", "rotationy", "rotationz", "rotationw"}}},
       {"quaternion_wxyz", {{"q1", "q2", "q3", "q4"}, {"q0", "q1", "q2", "q3"}}},
-      {"rpy", {{"roll", "pitch", "yaw"}, {"r", "p", "y"}}},
+      {"rpy", {{"roll", "pitch", "yaw"}}},
       {"rotation_vector", {{"rx", "ry", "rz"}, {"rvecx", "rvecy", "rvecz"}}},
       {"kuka", {{"a", "b", "c"}}},
       {"fanuc", {{"w", "p", "r"}}}};
@@ -68,7 +68,8 @@ rotation_names() {
   }
   pose.indices.clear();
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
-    if (table.columns()[c].is_number) pose.indices.push_back(static_cast<int>(c));
+    const TableColumn& column = table.columns()[c];
+    if (column.is_number && column.name != "image") pose.indices.push_back(static_cast<int>(c));
   }
   const std::size_t count = pose.indices.size();
   if (given.empty() && (count == 12 || count == 16)) pose.form = "matrix";

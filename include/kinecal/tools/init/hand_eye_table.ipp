@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/files/text_file.hpp"
+#include "kinecal/files/poses/pose_table.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/tools/init/table_columns.ipp"
 
@@ -21,7 +21,7 @@ class HandEyeTable {
   using Names = std::vector<std::string>;
 
   explicit HandEyeTable(const std::string& file)
-      : file_(file), table_(read_table(read_text_file(file), file)) {}
+      : file_(file), table_(read_table(read_pose_table(file), file)) {}
 
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] bool has_header() const { return table_.header; }
