@@ -39,17 +39,20 @@ struct Rig {
         const Vector3<double> corner(0.08 * (i % 4) - 0.12, 0.08 * (i / 4) - 0.08, 0.0);
         const Vector3<double> p = body_T_board * corner;
         const auto see = [&](Observation& eye, double x) {
-          const Eigen::Vector2d pixel = lens->predict(p - Vector3<double>(x, 0, 0), lens->settings(eye));
+          const Eigen::Vector2d pixel =
+              lens->predict(p - Vector3<double>(x, 0, 0), lens->settings(eye));
           eye.features.push_back(
-              {eye.sensor, {pixel.x() + noise * normal(random), pixel.y() + noise * normal(random), 0}});
+              {eye.sensor,
+               {pixel.x() + noise * normal(random), pixel.y() + noise * normal(random), 0}});
         };
         board.features.push_back({"board", corner});
         see(left, 0.0);
         see(right, 0.1);
       }
       sample.observations = {board, left, right};
-      sample.poses["board"] = body_T_board * Pose<double>{exp(Vector3<double>(uniform(0.1), uniform(0.1), 0.05)),
-                                                          {0.01, -0.02, 0.03}};
+      sample.poses["board"] =
+          body_T_board *
+          Pose<double>{exp(Vector3<double>(uniform(0.1), uniform(0.1), 0.05)), {0.01, -0.02, 0.03}};
       list.push_back(sample);
     }
   }
@@ -62,7 +65,14 @@ struct Rig {
       add_parameters(table, name, LensCamera<PlumbBob>::kParameters);
     }
     for (const char* name : {"right_joint", "board"}) add_parameters(table, name, kFrameParameters);
-    const Joint right{"right_joint", JointType::fixed, "left", "right", {Matrix3<double>::Identity(), {0.101, 0, 0}}, {}, {}, {}},
+    const Joint right{"right_joint",
+                      JointType::fixed,
+                      "left",
+                      "right",
+                      {Matrix3<double>::Identity(), {0.101, 0, 0}},
+                      {},
+                      {},
+                      {}},
         board{"board", JointType::floating, "left", "board", {}, {}, {}, {}};
     auto made = std::make_unique<Problem>(Robot("rig", {right, board}), "left", table,
                                           std::set<std::string>{"right_joint", "board"});
@@ -93,7 +103,8 @@ std::vector<double> values_of(const AnyProblem& problem, double size) {
   std::vector<double> values(static_cast<std::size_t>(problem.table().size()), 0.0);
   int i = 0;
   for (const char* name : Rig::kFree) {
-    values[static_cast<std::size_t>(problem.table().find(name))] = size * (++i % 2 == 0 ? 1.0 : -0.5);
+    values[static_cast<std::size_t>(problem.table().find(name))] =
+        size * (++i % 2 == 0 ? 1.0 : -0.5);
   }
   return values;
 }
@@ -121,8 +132,7 @@ TEST(OwnPoses, AreTheSchurComplementOfTheLargeProblem) {
       const NormalEquations of = measured->evaluator(both)->normal_equations(values);
       const Eigen::MatrixXd by_board = of.hessian.bottomRightCorner(6, 6);
       EXPECT_LE(of.gradient.tail(6).norm(), 1e-6 * by_board.norm()) << "the pose is the best one";
-      const Eigen::MatrixXd across =
-          of.hessian.topRightCorner(5, 6) * by_board.inverse();
+      const Eigen::MatrixXd across = of.hessian.topRightCorner(5, 6) * by_board.inverse();
       cost += of.cost;
       gradient += of.gradient.head(5) - across * of.gradient.tail(6);
       hessian += of.hessian.topLeftCorner<5, 5>() - across * of.hessian.bottomLeftCorner(6, 5);
@@ -142,7 +152,8 @@ TEST(OwnPoses, TheGradientIsThatOfTheBestCost) {
   const auto evaluator = problem->evaluator(free);
   const NormalEquations at = evaluator->normal_equations(values);
   for (int c = 0; c < free.size(); ++c) {
-    double& value = values[static_cast<std::size_t>(free.parameters()[static_cast<std::size_t>(c)])];
+    double& value =
+        values[static_cast<std::size_t>(free.parameters()[static_cast<std::size_t>(c)])];
     const double before = value, step = 1e-6;
     value = before + step;
     const double above = evaluator->normal_equations(values, false).cost;

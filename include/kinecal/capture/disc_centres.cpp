@@ -154,7 +154,8 @@ std::optional<DiscCentres> disc_centres(const GrayImage& image,
   constexpr int kPasses = 5;  // each leaves a tenth of the offset or less
   const auto discs = detail::measured_discs(image, plane, about, gap);
   if (!discs) return std::nullopt;
-  const detail::Straightening lens = detail::known_lens(camera, {plane, discs->middles}).value_or(detail::no_lens());
+  const detail::Straightening lens =
+      detail::known_lens(camera, {plane, discs->middles}).value_or(detail::no_lens());
   DiscCentres centres{discs->middles, discs->radius};
   for (int pass = 0; pass < kPasses; ++pass) {
     std::vector<Eigen::Vector2d> straight;

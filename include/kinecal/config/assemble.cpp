@@ -193,7 +193,8 @@ void prepare_search(CalibrationStep& step, const Config& config, const StepConfi
                     const Robot& robot, std::span<const Sample> samples) {
   const ParameterTable& table = step.problem->table();
   step.unknown_frames = unknown_frames(config, of_config, robot, table, step.free);
-  if (!config.per_sample.empty()) step.unknown_frames.clear();  // start_cameras() knows where to begin
+  if (!config.per_sample.empty())
+    step.unknown_frames.clear();  // start_cameras() knows where to begin
   if (step.unknown_frames.empty()) return;
   StepConfig of_step = of_config;
   Diagnostics ignored;  // already reported for the whole problem

@@ -134,7 +134,7 @@ struct Config {
   std::string base_link = "base_link";                 ///< link in which measurements are compared
   std::optional<SourceLocation> base_link_place = {};  ///< empty if the file does not set base_link
   std::optional<Vector3<double>> gravity = {};  ///< (3) m/s^2, in the root link; empty: down its z
-  std::string payload_link;       ///< carries the condition `payload` of a sample, kg; empty: none
+  std::string payload_link;  ///< carries the condition `payload` of a sample, kg; empty: none
   /// `per_sample:`  (kinecal only) frames with a pose of their own in each sample: fixed or floating joints, or
   /// virtual frames; each with the place that names it.
   std::vector<FreeParamConfig> per_sample;

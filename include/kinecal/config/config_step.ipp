@@ -44,8 +44,8 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
     if (const auto name = config_text(entry.value)) {
       progress.config.per_sample.push_back({*name, entry.place});
     } else {
-      map.error(entry.place, "per_sample: " + describe_config(entry.value) +
-                                 " is not the name of a frame");
+      map.error(entry.place,
+                "per_sample: " + describe_config(entry.value) + " is not the name of a frame");
     }
   }
   return map.count("max_num_iterations", fallback);

@@ -51,9 +51,10 @@ void check_held(const Config& config, const FreeParamConfig& frame, Diagnostics&
   for (const StepConfig& step : config.steps) {
     for (const FreeFrameConfig& free : step.free_frames) {
       if (free.name != frame.name) continue;
-      diagnostics.error(free.place, fmt::format("frame '{}' has a pose of its own in each sample by "
-                                                "per_sample; it cannot be free as well",
-                                                frame.name));
+      diagnostics.error(free.place,
+                        fmt::format("frame '{}' has a pose of its own in each sample by "
+                                    "per_sample; it cannot be free as well",
+                                    frame.name));
     }
   }
 }

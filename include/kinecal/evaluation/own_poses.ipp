@@ -89,8 +89,7 @@ inline Eigen::VectorXd OwnPoseSums::step(double damping) const {
   Eigen::MatrixXd scaled = per_length.asDiagonal() * hessian * per_length.asDiagonal();
   constexpr double kNoCurvature = 1e-12;  // of unit columns
   scaled.diagonal().array() += damping + kNoCurvature;
-  return per_length.cwiseProduct(
-      scaled.ldlt().solve(-per_length.cwiseProduct(gradient)));
+  return per_length.cwiseProduct(scaled.ldlt().solve(-per_length.cwiseProduct(gradient)));
 }
 
 inline double OwnPoseSums::decrease(const Eigen::VectorXd& change) const {
@@ -128,8 +127,9 @@ OwnPosesEvaluator<S>::OwnPosesEvaluator(const BasicProblem<S>& problem, const Fr
       best_(now_) {
   for (const int p : own_.parameters()) {
     if (free.column(p) < 0) continue;
-    throw std::invalid_argument("'" + problem.table()[p].name +
-                                "' is of a pose that each sample has of its own; it cannot be free");
+    throw std::invalid_argument(
+        "'" + problem.table()[p].name +
+        "' is of a pose that each sample has of its own; it cannot be free");
   }
   places_.resize(now_.size());
   for (std::size_t l = 0; l < batches_.size(); ++l) {
@@ -166,15 +166,13 @@ Eigen::VectorXd OwnPosesEvaluator<S>::squared_weights(int t, const TermResiduals
     const auto value = loss(
         weights.segment(row, size).cwiseProduct(rows.residual.segment(row, size)).squaredNorm());
     cost += 0.5 * value.rho;
-    weights.segment(row, size) =
-        value.derivative * weights.segment(row, size).cwiseAbs2().eval();
+    weights.segment(row, size) = value.derivative * weights.segment(row, size).cwiseAbs2().eval();
   }
   return weights;
 }
 
 template <class S>
-std::vector<detail::OwnPoseSums> OwnPosesEvaluator<S>::sums(ParameterValues values,
-                                                            Losses losses) {
+std::vector<detail::OwnPoseSums> OwnPosesEvaluator<S>::sums(ParameterValues values, Losses losses) {
   std::vector<detail::OwnPoseSums> all(now_.size(), detail::OwnPoseSums(own_.size()));
   (void)by_own_->evaluate(values, true, [&](int t, int sample, const TermResiduals& rows) {
     detail::OwnPoseSums& of = all[static_cast<std::size_t>(sample)];
@@ -231,10 +229,12 @@ std::optional<UndefinedResidual> OwnPosesEvaluator<S>::collect(ParameterValues v
                                                                Losses losses, Linearization at) {
   fit(values, losses);
   rows_.clear();
-  const auto undefined =
-      by_all_->evaluate(values, true, [&](int t, int sample, const TermResiduals& rows) {
+  const auto undefined = by_all_->evaluate(
+      values, true,
+      [&](int t, int sample, const TermResiduals& rows) {
         rows_.push_back({t, sample, rows});
-      }, at);
+      },
+      at);
   const Eigen::Index free = free_.size(), own = own_.size();
   std::vector<Eigen::MatrixXd> by_own(now_.size(), Eigen::MatrixXd::Zero(own, own)),
       by_both(now_.size(), Eigen::MatrixXd::Zero(own, free));

@@ -14,9 +14,10 @@
 namespace kinecal {
 
 /// A sensor of a built-in type; configurations name it by its kType.
-using BuiltInSensor = std::variant<ChainPoint, DepthCamera, LensCamera<PlumbBob>,
-                                   LensCamera<RationalPolynomial>, LensCamera<ThinPrism>,
-                                   LensCamera<Equidistant>, LensCamera<DoubleSphere>, BentBoard, ChainPose>;
+using BuiltInSensor =
+    std::variant<ChainPoint, DepthCamera, LensCamera<PlumbBob>, LensCamera<RationalPolynomial>,
+                 LensCamera<ThinPrism>, LensCamera<Equidistant>, LensCamera<DoubleSphere>,
+                 BentBoard, ChainPose>;
 
 /// A camera by the name of its lens: lens_of() or lens_named().
 /// @throws std::invalid_argument  if there is no such lens

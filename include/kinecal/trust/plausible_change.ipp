@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "kinecal/sensors/lens_camera.hpp"
 #include "kinecal/trust/judge.hpp"
 
 namespace kinecal::detail {
@@ -42,7 +43,17 @@ struct Limits {
   return {care, kRefused * kMost};
 }
 
-/// The largest plausible change of a parameter; a frame that is not in the URDF may be anywhere.
+/// True for a coefficient of a camera's lens.
+[[nodiscard]] inline bool is_lens_coefficient(const AnyProblem& problem, int parameter) {
+  return std::any_of(problem.sensors().begin(), problem.sensors().end(), [&](const auto& sensor) {
+    const std::vector<int>& own = sensor.parameters();
+    return sensor.sensor().delivers(Quantity::pixel) && own.size() > kIntrinsics &&
+           std::find(own.begin() + kIntrinsics, own.end(), parameter) != own.end();
+  });
+}
+
+/// The largest plausible change of a parameter; a frame that is not in the URDF may be anywhere, and so may the
+/// coefficients of a lens.
 [[nodiscard]] inline Limits plausible_change(const AnyProblem& problem, int parameter) {
   constexpr double kNever = 1e300, kDegree = std::numbers::pi / 180.0;
   const Parameter& p = problem.table()[parameter];
@@ -60,7 +71,9 @@ struct Limits {
     if (p.unit == "m") return moving ? plausible_length_change(problem, joint) : Limits{0.2, 1.0};
     return moving ? Limits{15.0 * kDegree, 60.0 * kDegree} : Limits{30.0 * kDegree, kNever};
   }
-  if (problem.frames().contains(owner)) return {kNever, kNever};
+  if (problem.frames().contains(owner) || is_lens_coefficient(problem, parameter)) {
+    return {kNever, kNever};
+  }
   if (p.unit == "m") return {0.1, kNever};
   if (p.unit == "s") return {0.2, 1.0};  // the lag of a sensor
   return p.unit == "1" ? Limits{0.09, 0.3} : Limits{kNever, kNever};

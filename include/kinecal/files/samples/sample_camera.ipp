@@ -136,7 +136,8 @@ class SampleCamera {
     const bool blank = is_blank(info_);
     const bool k = has_size("K", k_, 9, true, where, errors);
     const bool r = has_size("R", r_, 9, true, where, errors);
-    const bool p = has_size("P", p_, 12, blank, where, errors);
+    const bool only_size = k_.size == 0 && r_.size == 0 && info_.d.empty();  // nobody knows more
+    const bool p = has_size("P", p_, 12, blank || only_size, where, errors);
     if (k && r && blank && (info_.z_offset != 0.0 || info_.z_scaling != 1.0)) {
       errors.warn(line, where() +
                             ": z_offset_mm and z_scaling are not used, because there is no "

@@ -31,8 +31,9 @@ struct TriedLens {
   std::string name;
   Config config;
   std::vector<Sample> samples;
-  std::vector<double> squares;  ///< mean square of each sample while it was held out; 0: it has no residuals
-  std::string fault;            ///< why it is out; empty: it is not
+  std::vector<double>
+      squares;        ///< mean square of each sample while it was held out; 0: it has no residuals
+  std::string fault;  ///< why it is out; empty: it is not
 
   /// Root of the mean of the squares, pixels.
   [[nodiscard]] double error() const {
@@ -191,9 +192,10 @@ void find_lenses(Config& config, const Robot& robot, std::vector<Sample>& sample
                                                   detail::errors_text(tried)));
       continue;
     }
-    diagnostics.note(camera.place,
-                     fmt::format("sensor '{}': lens by the error on views held out: {}: taken as {}",
-                                 camera.name, detail::errors_text(tried), best->name));
+    diagnostics.note(
+        camera.place,
+        fmt::format("sensor '{}': lens by the error on views held out: {}: taken as {}",
+                    camera.name, detail::errors_text(tried), best->name));
     config = best->config;
     samples = best->samples;
   }

@@ -37,8 +37,8 @@ using Fisheye = LensCamera<Equidistant>;
   return problem;
 }
 
-[[nodiscard]] Sample sample_of(const TargetView& view, const CameraInfo& info,
-                               const Pose<double>& pose) {
+[[nodiscard]] Sample board_sample(const TargetView& view, const CameraInfo& info,
+                                  const Pose<double>& pose) {
   Sample sample;
   Observation board{"board", {}, {}}, camera{"camera", {}, info};
   for (std::size_t i = 0; i < view.pixels.size(); ++i) {
@@ -84,7 +84,7 @@ std::optional<SingleCamera> single_camera(std::span<const TargetView> views, dou
   for (std::size_t v = 0; v < views.size(); ++v) {
     const auto pose = start->pose(views[v]);
     if (!pose) continue;
-    problem->add_sample(detail::sample_of(views[v], info, *pose));
+    problem->add_sample(detail::board_sample(views[v], info, *pose));
     of_sample.push_back(v);
   }
   std::vector<int> columns(detail::Fisheye::kParameters.size());
@@ -116,7 +116,8 @@ std::optional<SingleCamera> single_camera(std::span<const TargetView> views, dou
                          {}};
     info.d = lens_start(wanted, like, angle);
   }
-  info.distortion_model = wanted == ThinPrism::kName ? std::string(RationalPolynomial::kName) : wanted;
+  info.distortion_model =
+      wanted == ThinPrism::kName ? std::string(RationalPolynomial::kName) : wanted;
   info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   info.p = {info.k[0], 0, info.k[2], 0, 0, info.k[4], info.k[5], 0, 0, 0, 1, 0};
   single.info = info;

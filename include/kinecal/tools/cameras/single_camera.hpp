@@ -15,7 +15,8 @@ namespace kinecal {
 /// A camera, and where the target was.
 struct SingleCamera {
   CameraInfo info;  ///< K, and D of the wanted lens
-  std::vector<std::optional<Pose<double>>> poses;  ///< camera_T_target of each view, as far as it is known
+  std::vector<std::optional<Pose<double>>>
+      poses;  ///< camera_T_target of each view, as far as it is known
 };
 
 /// Calibrates a camera alone, as a fisheye; then gives it a lens that is as close to that as it can.

@@ -15,9 +15,9 @@
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/geometry/rpy.hpp"
+#include "kinecal/problem/sampled_chain.hpp"
 #include "kinecal/samples/paired_features.hpp"
 #include "kinecal/sensors/lens.hpp"
-#include "kinecal/problem/sampled_chain.hpp"
 #include "kinecal/tools/cameras/camera_start.hpp"
 #include "kinecal/tools/cameras/single_camera.hpp"
 
@@ -46,9 +46,8 @@ struct TargetPair {
         if (model.name == block.models[1]) pair.camera = &model;
       }
       if (pair.target == nullptr || pair.camera == nullptr) continue;
-      const Joint* above = robot.has_link(pair.target->frame)
-                               ? robot.parent_joint(pair.target->frame)
-                               : nullptr;
+      const Joint* above =
+          robot.has_link(pair.target->frame) ? robot.parent_joint(pair.target->frame) : nullptr;
       for (const FreeParamConfig& frame : config.per_sample) {
         if (above != nullptr && above->name == frame.name) pair.joint = frame.name;
       }
@@ -62,10 +61,10 @@ struct TargetPair {
 }
 
 /// The view of a pair in a sample; no corners if there is none, or the target is not flat.
-[[nodiscard]] TargetView view_of(const TargetPair& pair, const Sample& given) {
+[[nodiscard]] TargetView target_view(const TargetPair& pair, const Sample& given) {
   const ComparedSensors both{{pair.target->name, pair.camera->name}};
-  const std::optional<Sample> paired = has_ids(given) ? pair_features(given, std::span(&both, 1))
-                                                      : std::nullopt;
+  const std::optional<Sample> paired =
+      has_ids(given) ? pair_features(given, std::span(&both, 1)) : std::nullopt;
   const Sample& sample = paired ? *paired : given;
   const Observation *target = sample.observation(pair.target->name),
                     *camera = sample.observation(pair.camera->name);
@@ -94,8 +93,8 @@ struct TargetPair {
 }
 
 /// The size of a camera's image: as recorded, or as far as corners lie around its middle.
-[[nodiscard]] std::array<double, 2> size_of(const CameraInfo* info,
-                                            std::span<const TargetView> views) {
+[[nodiscard]] std::array<double, 2> image_size_of(const CameraInfo* info,
+                                                  std::span<const TargetView> views) {
   if (info != nullptr && info->width > 0 && info->height > 0) {
     return {double(info->width), double(info->height)};
   }
@@ -156,7 +155,8 @@ struct SeenTarget {
     if (in_b != b.poses.end()) all.push_back(in_a * in_b->second.inverse());
   }
   const auto distance = [](const Pose<double>& x, const Pose<double>& y) {
-    return (x.translation - y.translation).norm() + log(Matrix3<double>(x.rotation.transpose() * y.rotation)).norm();
+    return (x.translation - y.translation).norm() +
+           log(Matrix3<double>(x.rotation.transpose() * y.rotation)).norm();
   };
   std::optional<Pose<double>> best;
   double least = HUGE_VAL;
@@ -189,7 +189,8 @@ struct SeenTarget {
   bool free = false;
   for (const StepConfig& step : config.steps) {
     for (const FreeFrameConfig& frame : step.free_frames) {
-      const bool whole = std::all_of(frame.axes.begin(), frame.axes.end(), [](bool f) { return f; });
+      const bool whole =
+          std::all_of(frame.axes.begin(), frame.axes.end(), [](bool f) { return f; });
       free = free || (frame.name == joint->name && whole);
     }
     for (const FrameInitialValueConfig& value : step.frame_initial_values) {
@@ -277,7 +278,7 @@ void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samp
   std::vector<detail::SeenTarget> seen;
   for (const detail::TargetPair& pair : pairs) {
     std::vector<TargetView> views;
-    for (const Sample& sample : samples) views.push_back(detail::view_of(pair, sample));
+    for (const Sample& sample : samples) views.push_back(detail::target_view(pair, sample));
     const CameraInfo* info = detail::info_of(pair.camera->name, samples);
     detail::SeenTarget of{pair, {}};
     if (info != nullptr && (info->k[0] > 0.0 || info->p[0] > 0.0)) {
@@ -291,9 +292,9 @@ void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samp
                                       pair.camera->param_name));
         continue;
       }
-      const std::array<double, 2> size = detail::size_of(info, views);
-      const auto single = single_camera(views, size[0], size[1],
-                                        detail::options_of(*pair.camera).lens);
+      const std::array<double, 2> size = detail::image_size_of(info, views);
+      const auto single =
+          single_camera(views, size[0], size[1], detail::options_of(*pair.camera).lens);
       if (!single) {
         diagnostics.error(pair.camera->place,
                           fmt::format("camera '{}': no view of '{}' has four corners of a flat "

@@ -1,0 +1,255 @@
+// Cameras alone: photographs of a board, and nothing else.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/choose_images.hpp"
+#include "kinecal/config/choose_lenses.hpp"
+#include "kinecal/config/own_frames.hpp"
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/sensors/lens_camera.hpp"
+#include "kinecal/solve/calibrate.hpp"
+#include "kinecal/study/seeded_random.hpp"
+#include "kinecal/tools/cameras/find_lenses.hpp"
+#include "kinecal/tools/cameras/lens_start.hpp"
+#include "kinecal/tools/cameras/start_cameras.hpp"
+#include "support/data.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A configuration of cameras that see a board with a pose of its own in each sample.
+/// @param lens    of each camera
+/// @param bent    the board may be bent
+std::string config_of(const std::vector<std::string>& cameras, const std::string& lens,
+                      const std::string& coefficients, bool bent = false) {
+  std::string models = std::string(" - {name: board, type: ") + (bent ? "board" : "chain3d") +
+                       ", frame: board}\n",
+              free, frames, blocks;
+  for (const std::string& camera : cameras) {
+    models += " - {name: " + camera + ", type: camera2d, frame: " + camera +
+              (lens.empty() ? "" : ", lens: " + lens) + "}\n";
+    std::istringstream names("fx fy cx cy " + coefficients);
+    for (std::string name; names >> name;) free += (free.empty() ? "" : ", ") + camera + "_" + name;
+    blocks += " - {name: " + camera +
+              "_corners, type: chain3d_to_camera2d, model_3d: board, model_2d: " + camera +
+              ", sigma: 1.0}\n";
+    if (camera != cameras.front()) {
+      frames += " - {name: " + camera +
+                "_joint, x: true, y: true, z: true, roll: true, pitch: true, yaw: true}\n";
+    }
+  }
+  if (bent) free += ", board_bend_x, board_bend_y";
+  return "base_link: " + cameras.front() + "\nper_sample: [board]\nmodels:\n" + models +
+         "free_params: [" + free + "]\n" + (frames.empty() ? "" : "free_frames:\n" + frames) +
+         "error_blocks:\n" + blocks;
+}
+
+/// A calibration of cameras as the program makes it.
+struct Cameras {
+  Cameras(const std::string& text, std::vector<Sample> recorded) : samples(std::move(recorded)) {
+    config = parse_config(text, "cameras.yaml", diagnostics);
+    if (!diagnostics.errors.empty()) return;
+    robot = with_own_frames(parse_urdf(urdf_of_cameras(config), "cameras.urdf"), config, samples,
+                            diagnostics);
+    find_lenses(config, robot, samples, diagnostics);
+    start_cameras(config, robot, samples, diagnostics);
+    choose_lenses(config, samples, diagnostics);
+    choose_images(config, robot, samples, diagnostics);
+    if (!diagnostics.errors.empty()) return;
+    calibration = assemble(config, robot, samples, diagnostics);
+    if (diagnostics.errors.empty()) result = calibrate(calibration);
+  }
+  [[nodiscard]] double cost() const { return result.steps.back().final_cost; }
+  [[nodiscard]] double value(const std::string& name) const {
+    return result.table[result.table.find(name)].value;
+  }
+  /// The camera_info that comes out.
+  [[nodiscard]] CameraInfo info(const std::string& camera) const {
+    const Eigen::VectorXd values = result.table.values();
+    for (const MountedSensor& sensor : calibration.steps.back().problem->sensors()) {
+      if (sensor.mount().name != camera) continue;
+      return sensor.sensor().calibrated(
+          *samples.front().observation(camera)->camera,
+          sensor.own_values({values.data(), static_cast<std::size_t>(values.size())}));
+    }
+    return {};
+  }
+
+  Diagnostics diagnostics;
+  Config config;
+  Robot robot;
+  std::vector<Sample> samples;
+  Calibration calibration;
+  CalibrationResult result;
+};
+
+/// The corners of lens_mrcal, with nothing known of the camera but the size of its image.
+std::vector<Sample> overpass(const std::string& folder) {
+  std::ifstream file(folder + "/lens_mrcal/corners.csv");
+  std::map<int, Sample> views;
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    int view = 0, row = 0, col = 0;
+    double u = 0.0, v = 0.0, weight = 0.0;
+    EXPECT_EQ(std::sscanf(line.c_str(), "%d,%d,%d,%lf,%lf,%lf", &view, &row, &col, &u, &v, &weight),
+              6);
+    Sample& sample = views[view];
+    if (sample.observations.empty()) {
+      CameraInfo info;
+      info.width = 6016;
+      info.height = 4016;
+      sample.observations = {{"board", {}, {}}, {"camera", {}, info}};
+      sample.source = "view " + std::to_string(view);
+    }
+    sample.observations[0].features.push_back({"board", {0.077 * col, 0.077 * row, 0.0}});
+    sample.observations[1].features.push_back({"camera", {u, v, 0.0}, {}, 1.0 / weight});
+  }
+  std::vector<Sample> samples;
+  for (auto& [view, sample] : views) samples.push_back(std::move(sample));
+  return samples;
+}
+
+/// 93 views of a board by a wide lens, from nothing but the corners: costs of an independent implementation.
+TEST(CamerasAlone, AWideLensFromNothingButCorners) {
+  KINECAL_NEEDS_DATA("lens_mrcal")
+  const std::vector<Sample> samples = overpass(test::data_folder().string());
+  ASSERT_EQ(samples.size(), 93U);
+  const auto rms = [](double cost) { return std::sqrt(2.0 * cost / 9300.0); };
+  Cameras rational(config_of({"camera"}, "rational_polynomial", "k1 k2 p1 p2 k3 k4 k5 k6", true),
+                   samples);
+  ASSERT_THAT(rational.diagnostics.errors, IsEmpty());
+  EXPECT_NEAR(rms(rational.cost()), 0.773296, 1e-5);
+  EXPECT_NEAR(rational.info("camera").k[0], 2073.8396, 0.05);
+  EXPECT_NEAR(rational.info("camera").d[5], 0.7641705, 1e-3);
+  // w0 and w1 of the reference: deflections in the middle of a board of 0.693 m
+  EXPECT_NEAR(rational.value("board_bend_x"), 8.0 * 0.00104705 / (0.693 * 0.693), 2e-4);
+  EXPECT_NEAR(rational.value("board_bend_y"), -8.0 * 0.000517389 / (0.693 * 0.693), 2e-4);
+  Cameras fisheye(config_of({"camera"}, "equidistant", "k1 k2 k3 k4", true), samples);
+  ASSERT_THAT(fisheye.diagnostics.errors, IsEmpty());
+  EXPECT_NEAR(rms(fisheye.cost()), 0.824034, 1e-5);
+  Cameras flat(config_of({"camera"}, "rational_polynomial", "k1 k2 p1 p2 k3 k4 k5 k6"), samples);
+  EXPECT_NEAR(rms(flat.cost()), 1.159241, 1e-5);
+}
+
+/// Evidence prefers the rational lens, and says why not plumb_bob.
+TEST(CamerasAlone, TheLensIsFoundByEvidence) {
+  KINECAL_NEEDS_DATA("lens_mrcal")
+  const std::vector<Sample> all = overpass(test::data_folder().string());
+  std::vector<Sample> some;
+  for (std::size_t i = 0; i < all.size(); i += 2) some.push_back(all[i]);
+  Cameras cameras(config_of({"camera"}, "auto", "", true), some);
+  ASSERT_THAT(cameras.diagnostics.errors, IsEmpty());
+  EXPECT_EQ(cameras.config.steps.front().models.back().lens, "rational_polynomial");
+  EXPECT_THAT(cameras.diagnostics.notes,
+              testing::Contains(HasSubstr("taken as rational_polynomial")));
+}
+
+/// Two cameras on a body see a board that a person holds; the truth is found from pixels alone.
+TEST(CamerasAlone, ARigFromPixelsAlone) {
+  CameraInfo left, right;
+  left.width = right.width = 1280;
+  left.height = right.height = 960;
+  left.distortion_model = right.distortion_model = "equidistant";
+  left.k = {420, 0, 645, 0, 422, 470, 0, 0, 1};
+  right.k = {500, 0, 630, 0, 498, 490, 0, 0, 1};
+  left.d = {0.02, -0.004, 1e-3, -1e-4};
+  right.d = {-0.01, 0.003, 0.0, 0.0};
+  const Pose<double> left_T_right{exp(Vector3<double>(0.02, 0.4, -0.03)), {0.12, -0.01, 0.02}};
+  const auto camera = any_built_in(lens_camera("equidistant", ImageKind::raw));
+  SeededRandom random(3);
+  std::vector<Sample> samples;
+  while (samples.size() < 30) {
+    const Pose<double> left_T_board{
+        exp(Vector3<double>(random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6),
+                            random.uniform(-3.0, 3.0))),
+        {random.uniform(-0.5, 0.7), random.uniform(-0.4, 0.4), random.uniform(0.3, 0.7)}};
+    Sample sample;
+    Observation board{"board", {}, {}};
+    const auto see = [&](const std::string& name, const CameraInfo& info,
+                         const Pose<double>& pose) {
+      CameraInfo blank;
+      blank.width = info.width;
+      blank.height = info.height;
+      Observation eye{name, {}, blank};
+      const auto settings = camera->settings({name, {}, info});
+      for (int i = 0; i < 48; ++i) {
+        const Vector3<double> p = pose * Vector3<double>(0.06 * (i % 8), 0.06 * (i / 8), 0.0);
+        const Eigen::Vector2d pixel = camera->predict(p, settings);
+        eye.features.push_back({name, {pixel.x(), pixel.y(), 0.0}});
+      }
+      sample.observations.push_back(eye);
+    };
+    for (int i = 0; i < 48; ++i) {
+      board.features.push_back({"board", {0.06 * (i % 8), 0.06 * (i / 8), 0.0}});
+    }
+    sample.observations.push_back(board);
+    see("left", left, left_T_board);
+    if (samples.size() % 3 != 0) see("right", right, left_T_right.inverse() * left_T_board);
+    samples.push_back(sample);
+  }
+  Cameras rig(config_of({"left", "right"}, "equidistant", "k1 k2 k3 k4"), samples);
+  ASSERT_THAT(rig.diagnostics.errors, IsEmpty());
+  ASSERT_TRUE(rig.result.converged);
+  EXPECT_LE(rig.cost(), 1e-9);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(rig.info("left").d[i], left.d[i], 1e-5);
+    EXPECT_NEAR(rig.info("left").k[4], left.k[4], 1e-3);
+  }
+  EXPECT_NEAR(rig.value("right_joint_x"), 0.12, 1e-6);
+  EXPECT_NEAR(rig.value("right_joint_y"), -0.01, 1e-6);
+}
+
+TEST(CamerasAlone, WhatCannotBeIsSaid) {
+  const std::string text = config_of({"camera"}, "equidistant", "k1");
+  const auto errors = [](const std::string& config, std::vector<Sample> samples) {
+    return Cameras(config, std::move(samples)).diagnostics.errors;
+  };
+  Sample one;
+  one.source = "samples.yaml:1";
+  one.observations = {{"board", {{"board", {0, 0, 0}}, {"board", {0.1, 0, 0}}}, {}},
+                      {"camera", {{"camera", {10, 20, 0}}, {"camera", {30, 20, 0}}}, CameraInfo{}}};
+  EXPECT_THAT(errors(text, {one}), ElementsAre(HasSubstr("no view of 'board' has four corners")));
+  std::string held = text;
+  held.replace(held.find("camera_fx, "), 11, "");
+  EXPECT_THAT(errors(held, {one}), ElementsAre(HasSubstr("its intrinsics are not known; free")));
+  std::string unknown = text;
+  unknown.replace(unknown.find("[board]"), 7, "[bord]");
+  EXPECT_THAT(
+      errors(unknown, {one}),
+      testing::Contains(HasSubstr("per_sample: 'bord' is neither a joint of the robot nor")));
+}
+
+/// The start of a lens is close to the lens that it is to be like.
+TEST(LensStart, IsCloseToAFisheye) {
+  const RoundLens like = rough_fisheye(400.0);
+  for (const auto& [lens, degrees] : std::map<std::string, double>{{"plumb_bob", 40},
+                                                                   {"rational_polynomial", 80},
+                                                                   {"equidistant", 100},
+                                                                   {"double_sphere", 90}}) {
+    const std::vector<double> d = lens_start(lens, like, degrees);
+    CameraInfo info;
+    info.k = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    info.distortion_model = lens;
+    info.d = d;
+    const auto camera = any_built_in(lens_camera(lens, ImageKind::raw));
+    for (double t = 0.1; t < degrees / 57.3; t += 0.1) {
+      const Eigen::Vector2d at =
+          camera->predict({std::sin(t), 0.0, std::cos(t)}, camera->settings({"c", {}, info}));
+      EXPECT_NEAR(at.x(), t, 0.03) << lens << " at " << t;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kinecal
