@@ -17,7 +17,7 @@ namespace detail {
 std::optional<Matrix3<double>> rotation_from_rounded_quaternion(const Eigen::Vector4d& xyzw) {
   constexpr double kMostOff = 1e-2;  // of its length; a file has few digits
   const double length = xyzw.norm();
-  if (!(std::abs(length - 1.0) <= kMostOff)) return std::nullopt;
+  if (std::abs(length - 1.0) > kMostOff) return std::nullopt;  // NaN is no wrong length
   return rotation_from_quaternion<double>(xyzw / length);
 }
 
