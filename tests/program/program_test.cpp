@@ -575,8 +575,9 @@ TEST_F(Program, RefusesABaseLinkThatDoesNotExist) {
 }
 
 TEST_F(Program, RefusesAFloatingJointOnTheWayWithoutItsPoseByName) {
-  spoil("c.yaml", "frame: hand", "frame: balloon");
-  expect_refused(HasSubstr("the pose of floating joint 'drifter' is not in the sample"));
+  spoil("tiny.urdf", "<joint name=\"mast_joint\" type=\"fixed\">",
+        "<joint name=\"mast_joint\" type=\"floating\">");
+  expect_refused(HasSubstr("the pose of floating joint 'mast_joint' is not in the sample"));
 }
 
 TEST_F(Program, RefusesAFreeParameterThatDoesNotExist) {

@@ -125,11 +125,8 @@ inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
   if (frame.is_fixed) return check_fixed_frame(frame, robot, recorded, have_samples, diagnostics);
   if (robot.has_joint(frame.name)) {
     if (robot.joint(frame.name).type != JointType::floating) return;
-    diagnostics.error(frame.place,
-                      fmt::format("free frame '{0}' is a floating joint: its pose is measured in "
-                                  "each sample, so the URDF cannot hold a correction of it; free "
-                                  "the frame of a fixed joint before or after '{0}'",
-                                  frame.name));
+    const std::string wrong = "' is a floating joint, whose pose is measured; free a fixed joint";
+    diagnostics.error(frame.place, "free frame '" + frame.name + wrong + " before or after it");
     return;
   }
   if (robot.has_link(frame.name)) {

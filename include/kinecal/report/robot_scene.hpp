@@ -52,7 +52,7 @@ struct SceneJoint {
   int drive = -1;                             ///< of RobotScene::names; negative: it does not move
   double multiplier = 1.0, offset = 0.0;      ///< position = multiplier * q[drive] + offset
   std::optional<SceneCorrection> before = {}, after = {};  ///< nullopt: none
-  bool is_virtual = false;                                 ///< a free frame that is not in the URDF
+  bool is_virtual = false;  ///< a free frame that is not in the URDF, or in a floating joint
 };
 
 /// A measured and a predicted point, metres, in the base link.

@@ -11,6 +11,7 @@
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/report/robot_scene.hpp"
+#include "kinecal/report/scene_floating.ipp"
 
 namespace kinecal::detail {
 
@@ -70,23 +71,17 @@ class SceneRobot {
   void add_floating(const Joint& joint) {
     int parent = links_.at(joint.parent);
     for (std::size_t i = 0; i < kFloatingCoordinates.size(); ++i) {
-      const bool slides = i < 3, is_last = i + 1 == kFloatingCoordinates.size();
-      SceneJoint shown{.name = joint.name,
-                       .type = slides ? JointType::prismatic : JointType::continuous,
-                       .parent = parent,
-                       .child = is_last ? links_.at(joint.child) : add_link(""),
-                       .origin = i == 0 ? joint.origin : Pose<double>()};
-      shown.axis = {};
-      shown.axis[slides ? i : 5 - i] = 1.0;
+      SceneJoint shown = scene_coordinate(joint, i);
+      shown.parent = parent;
+      shown.child = i + 1 < kFloatingCoordinates.size() ? add_link("") : links_.at(joint.child);
       shown.drive = position_of(floating_coordinate(joint.name, i));
-      shown.is_virtual = true;  // nothing connects its links
       parent = shown.child;
       scene_.joints.push_back(std::move(shown));
     }
   }
 
   void add_joint(const Joint& joint) {
-    if (joint.type == JointType::floating) return add_floating(joint);
+    if (is_measured(problem_, joint)) return add_floating(joint);
     SceneJoint shown{.name = joint.name,
                      .type = joint.type,
                      .parent = links_.at(joint.parent),

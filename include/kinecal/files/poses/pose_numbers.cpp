@@ -17,7 +17,7 @@ namespace detail {
 std::optional<Matrix3<double>> rotation_from_rounded_quaternion(const Eigen::Vector4d& xyzw) {
   constexpr double kMostOff = 1e-2;  // of its length; a file has few digits
   const double length = xyzw.norm();
-  if (!(std::abs(length - 1.0) <= kMostOff)) return std::nullopt;
+  if (std::abs(length - 1.0) > kMostOff) return std::nullopt;  // NaN is no wrong length
   return rotation_from_quaternion<double>(xyzw / length);
 }
 
@@ -133,18 +133,10 @@ bool PoseForm::has_size(std::size_t numbers) const {
 }
 
 std::string PoseForm::columns_text() const {
-  switch (rotation) {
-    case RotationForm::quaternion_xyzw:
-      return "7 columns: x y z qx qy qz qw";
-    case RotationForm::quaternion_wxyz:
-      return "7 columns: x y z qw qx qy qz";
-    case RotationForm::rotation_vector:
-      return "6 columns: x y z rx ry rz";
-    case RotationForm::matrix:
-      return "12 or 16 columns: the rows of the matrix";
-    default:
-      break;
-  }
+  constexpr const char* kTexts[] = {"7 columns: x y z qx qy qz qw", "7 columns: x y z qw qx qy qz",
+                                    "6 columns: x y z rx ry rz",
+                                    "12 or 16 columns: the rows of the matrix"};
+  if (axes.empty()) return kTexts[static_cast<int>(rotation)];
   return fmt::format("6 columns: x y z, then the angles about {} {} {}", axes[0], axes[1], axes[2]);
 }
 

@@ -74,7 +74,7 @@ namespace detail {
 
 /// The rotation of a quaternion with the digits of a file.
 /// @param xyzw  (4)
-/// @return      (3 x 3); nullopt if the length is not 1 within 0.01
+/// @return      (3 x 3), NaN of NaN; nullopt if the length is not 1 within 0.01
 [[nodiscard]] std::optional<Matrix3<double>> rotation_from_rounded_quaternion(
     const Eigen::Vector4d& xyzw);
 

@@ -5,8 +5,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <map>
-#include <numbers>
-#include <optional>
 #include <random>
 #include <set>
 #include <string>
@@ -15,29 +13,14 @@
 
 #include "kinecal/geometry/pose.hpp"
 #include "kinecal/kinematics/chain.hpp"
-#include "kinecal/kinematics/floating_joint.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/tools/init/determined_offsets.hpp"
+#include "kinecal/tools/init/random_positions.ipp"
 
 namespace kinecal::detail {
 
 using NamedNumbers = std::map<std::string, double>;      ///< of joints: radians and metres
 using NamedPoses = std::map<std::string, Pose<double>>;  ///< corrections of frames
-
-/// From -1 to 1; equal for equal seeds on every platform.
-[[nodiscard]] inline double random_number(std::mt19937_64& random) {
-  return static_cast<double>(random() >> 11) * 0x1p-52 - 1.0;
-}
-
-/// A position within limits; without limits, up to half a turn or half a metre to either side.
-[[nodiscard]] inline double random_position(const Joint& joint, std::mt19937_64& random) {
-  const double most = turns(joint.type) ? std::numbers::pi : 0.5, share = random_number(random);
-  const bool limited = joint.type != JointType::continuous && joint.limits &&
-                       joint.limits->upper > joint.limits->lower;
-  if (!limited) return most * share;
-  return 0.5 * (joint.limits->lower + joint.limits->upper) +
-         0.5 * share * (joint.limits->upper - joint.limits->lower);
-}
 
 /// A robot with a target and a sensor in generated poses.
 class GeneratedPoses {
@@ -166,11 +149,8 @@ class GeneratedPoses {
     std::vector<NamedNumbers> others;  // behind the camera: only if nothing is in front of it
     for (int i = 0; i < kTries && poses_.size() < kPoses; ++i) {
       NamedNumbers pose;
-      for (const std::string& name : drives) {
-        const std::optional<FloatingCoordinate> part = floating_coordinate(name);
-        Joint free;  // a coordinate of a floating joint
-        free.type = part && part->index < 3 ? JointType::prismatic : JointType::continuous;
-        pose[name] = random_position(part ? free : robot_.joint(name), random);
+      for (const std::string& joint : drives) {
+        pose[joint] = random_position(driven(robot_, joint), random);
       }
       if (i == 0 && measured_.is_camera && measured_.target == measured_.base) {
         put_before_camera(pose);
