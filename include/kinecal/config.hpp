@@ -10,6 +10,7 @@
 #include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/config.hpp"
 #include "kinecal/config/config_to_yaml.hpp"
+#include "kinecal/config/configured_sensor.hpp"
 #include "kinecal/config/doubts/check_offsets.hpp"
 #include "kinecal/config/doubts/check_weight.hpp"
 #include "kinecal/config/doubts/enough_samples.hpp"

@@ -217,7 +217,10 @@ constexpr LongSource kLongSources[] = {
     {"kinematics/twist_walker.hpp", "the derivation of the twists and its one walker"},
     {"parameters/free_parameters.hpp", "every kind of free parameter as a type"},
     {"parameters/joint_model.hpp", "what a joint model is, and all of them: ten lines each"},
+    {"problem/any_problem.hpp",
+     "the interface of a problem: all that is added to it and known of it"},
     {"tools/install/launch_folder.ipp", "one sequence of file operations that may stop anywhere"},
+    {"trust/captures.cpp", "one search: its robust start, limits and refits share their state"},
 };
 
 TEST(Architecture, EveryHeaderHasALicence) {

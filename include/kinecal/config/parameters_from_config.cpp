@@ -13,40 +13,6 @@
 
 namespace kinecal::detail {
 
-const SensorEntry& sensor_entry(const ModelConfig& model) {
-  const SensorEntry* entry = registry().sensor(model.type);
-  if (entry != nullptr) return *entry;
-  const std::vector<SensorEntry>& all =
-      registry().sensors();  // any camera: for names of parameters
-  return *std::find_if(all.begin(), all.end(),
-                       [](const SensorEntry& one) { return measures_depth(*one.sensor); });
-}
-
-std::shared_ptr<const AnySensor> sensor_of(const ModelConfig& model) {
-  return sensor_entry(model).make(options_of(model));
-}
-
-std::string free_coefficient(const Config& config, const ModelConfig& camera) {
-  const std::shared_ptr<const AnySensor> sensor = sensor_of(camera);
-  const std::span<const ParameterInfo> all = sensor->parameters();
-  for (const StepConfig& step : config.steps) {
-    for (const FreeParamConfig& free : step.free_params) {
-      for (std::size_t i = kIntrinsics; i < all.size(); ++i) {
-        if (free.name == parameter_name(camera.param_name, all[i].name)) return free.name;
-      }
-    }
-  }
-  return {};
-}
-
-SensorOptions options_of(const ModelConfig& model) {
-  return {model.image, model.lens == kAnyLens ? "" : model.lens};
-}
-
-Mount mount_from(const ModelConfig& model) {
-  return {model.name, model.frame, model.param_name};
-}
-
 std::vector<ParameterInfo> own_parameters(const BlockConfig& block) {
   const BlockEntry* entry = registry().block(block.type);
   if (entry == nullptr) return {};
@@ -149,10 +115,6 @@ inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
                                     "a frame of the samples; it keeps its initial value",
                                     frame.name));
   }
-}
-
-std::string lag_name(const ModelConfig& model) {
-  return parameter_name(mount_from(model).parameter_prefix(), kLag.name);
 }
 
 /// Names that free_params of a step may contain.

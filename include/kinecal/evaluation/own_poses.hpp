@@ -89,10 +89,6 @@ class OwnPosesEvaluator final : public AnyEvaluator {
 
   /// Moves a sample in the batches to its current poses.
   void place(std::size_t sample);
-  /// The square of each row's weight, its loss included.
-  /// @param cost  adds the cost of the rows
-  [[nodiscard]] Eigen::VectorXd squared_weights(int term, const TermResiduals& rows, Losses losses,
-                                                double& cost) const;
   /// The normal equations of each sample at its current poses.
   [[nodiscard]] std::vector<detail::OwnPoseSums> sums(ParameterValues values, Losses losses);
   /// Fits all poses at these values.

@@ -2,119 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "kinecal/evaluation/own_poses.hpp"
-#include "kinecal/kinematics/floating_joint.hpp"
+#include "kinecal/evaluation/own_poses_parts.ipp"
 
 namespace kinecal {
-
-namespace detail {
-
-/// Table indices of the parameters of the poses that samples have of their own: six of each frame.
-[[nodiscard]] inline FreeSet own_pose_parameters(const AnyProblem& problem) {
-  std::vector<int> all;
-  for (const std::string& frame : problem.own_poses()) {
-    for (const auto axis : kFrameAxes) {
-      all.push_back(problem.table().find(parameter_name(frame, axis)));
-    }
-  }
-  return {std::move(all), problem.table().size()};
-}
-
-/// The columns of two sets.
-[[nodiscard]] inline FreeSet joined(const FreeSet& first, const FreeSet& second) {
-  std::vector<int> all = first.parameters();
-  all.insert(all.end(), second.parameters().begin(), second.parameters().end());
-  return {std::move(all), first.table_size()};
-}
-
-/// Where the numbers of the poses stand in the rows of a layout.
-[[nodiscard]] inline std::vector<PosePlace> pose_places(const AnyProblem& problem,
-                                                        const SampleLayout& layout) {
-  std::vector<PosePlace> places;
-  for (std::size_t s = 0; s < layout.sensors.size(); ++s) {
-    if (!layout.sensors[s]) continue;
-    const std::vector<SampledChain>& chains = problem.sensors()[s].chains();
-    for (std::size_t c = 0; c < chains.size(); ++c) {
-      const std::size_t first = layout.sensors[s]->joints[c];
-      if (first == kAbsent) continue;
-      const std::size_t stride = 2 + most_effects(chains[c].parameters());
-      const std::vector<ChainJoint>& joints = chains[c].chain().joints;
-      for (std::size_t f = 0; f < problem.own_poses().size(); ++f) {
-        PosePlace place{f, {}};
-        bool found = false;
-        for (std::size_t j = 0; j < joints.size(); ++j) {
-          if (joints[j].floating != problem.own_poses()[f]) continue;
-          place.offsets[floating_coordinate(joints[j].name)->index] = first + stride * j;
-          found = true;
-        }
-        if (found) places.push_back(place);
-      }
-    }
-  }
-  return places;
-}
-
-/// A pose after a step.
-/// @param step  (6) translation and rotation vector, in the moved frame
-[[nodiscard]] inline Pose<double> moved(const Pose<double>& pose, const Eigen::VectorXd& step) {
-  return pose * Pose<double>{exp(Vector3<double>(step.tail<3>())), step.head<3>()};
-}
-
-/// Lengths of the columns of a Jacobian by its J^T J; one for a column of zeros.
-[[nodiscard]] inline Eigen::VectorXd column_lengths(const Eigen::MatrixXd& hessian) {
-  return hessian.diagonal().unaryExpr([](double h) { return h > 0.0 ? std::sqrt(h) : 1.0; });
-}
-
-/// The pseudo-inverse of a (k x k) J^T J: directions without curvature stay out.
-[[nodiscard]] inline Eigen::MatrixXd inverse_where_determined(const Eigen::MatrixXd& hessian) {
-  const Eigen::VectorXd per_length = column_lengths(hessian).cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(per_length.asDiagonal() * hessian *
-                                                             per_length.asDiagonal());
-  constexpr double kNoCurvature = 1e-12;  // of unit columns
-  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr(
-      [](double value) { return value > kNoCurvature ? 1.0 / value : 0.0; });
-  return per_length.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
-         eigen.eigenvectors().transpose() * per_length.asDiagonal();
-}
-
-inline Eigen::VectorXd OwnPoseSums::step(double damping) const {
-  const Eigen::VectorXd per_length = column_lengths(hessian).cwiseInverse();
-  Eigen::MatrixXd scaled = per_length.asDiagonal() * hessian * per_length.asDiagonal();
-  constexpr double kNoCurvature = 1e-12;  // of unit columns
-  scaled.diagonal().array() += damping + kNoCurvature;
-  return per_length.cwiseProduct(scaled.ldlt().solve(-per_length.cwiseProduct(gradient)));
-}
-
-inline double OwnPoseSums::decrease(const Eigen::VectorXd& change) const {
-  return -gradient.dot(change) - 0.5 * change.dot(hessian * change);
-}
-
-/// The damping of a Levenberg-Marquardt search.
-/// Source: Nielsen, Damping Parameter in Marquardt's Method, 1999.
-struct Damping {
-  static constexpr double kMost = 1e12;  ///< where no step helps
-  double value = 1e-6, growth = 2.0;
-
-  /// @param gain  the decrease of the cost, as a share of what was promised; negative: there was none
-  void update(double gain) {
-    if (gain < 0.0) {
-      value = std::max(1e-4, value * growth);
-      growth *= 2.0;
-    } else {
-      value *= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * gain - 1.0, 3));
-      growth = 2.0;
-    }
-  }
-};
-
-}  // namespace detail
 
 template <class S>
 OwnPosesEvaluator<S>::OwnPosesEvaluator(const BasicProblem<S>& problem, const FreeSet& free)
@@ -156,27 +52,11 @@ void OwnPosesEvaluator<S>::place(std::size_t sample) {
 }
 
 template <class S>
-Eigen::VectorXd OwnPosesEvaluator<S>::squared_weights(int t, const TermResiduals& rows,
-                                                      Losses losses, double& cost) const {
-  const Term& term = problem_.term(t);
-  const Loss loss = term.options.loss_for(losses);
-  Eigen::VectorXd weights = term.weight * rows.factor;
-  const int size = term.feature_size;
-  for (Eigen::Index row = 0; row < weights.size(); row += size) {
-    const auto value = loss(
-        weights.segment(row, size).cwiseProduct(rows.residual.segment(row, size)).squaredNorm());
-    cost += 0.5 * value.rho;
-    weights.segment(row, size) = value.derivative * weights.segment(row, size).cwiseAbs2().eval();
-  }
-  return weights;
-}
-
-template <class S>
 std::vector<detail::OwnPoseSums> OwnPosesEvaluator<S>::sums(ParameterValues values, Losses losses) {
   std::vector<detail::OwnPoseSums> all(now_.size(), detail::OwnPoseSums(own_.size()));
   (void)by_own_->evaluate(values, true, [&](int t, int sample, const TermResiduals& rows) {
     detail::OwnPoseSums& of = all[static_cast<std::size_t>(sample)];
-    const Eigen::VectorXd w2 = squared_weights(t, rows, losses, of.cost);
+    const Eigen::VectorXd w2 = detail::squared_weights(problem_.term(t), rows, losses, of.cost);
     const Eigen::MatrixXd weighted = w2.asDiagonal() * rows.jacobian;
     of.hessian.noalias() += rows.jacobian.transpose() * weighted;
     of.gradient.noalias() += weighted.transpose() * rows.residual;
@@ -242,7 +122,8 @@ std::optional<UndefinedResidual> OwnPosesEvaluator<S>::collect(ParameterValues v
     double cost = 0.0;
     const auto poses = of.residuals.jacobian.rightCols(own);
     const Eigen::MatrixXd weighted =
-        squared_weights(of.term, of.residuals, losses, cost).asDiagonal() * poses;
+        detail::squared_weights(problem_.term(of.term), of.residuals, losses, cost).asDiagonal() *
+        poses;
     const auto s = static_cast<std::size_t>(of.sample);
     by_own[s].noalias() += weighted.transpose() * poses;
     by_both[s].noalias() += weighted.transpose() * of.residuals.jacobian.leftCols(free);
@@ -260,7 +141,8 @@ std::optional<UndefinedResidual> OwnPosesEvaluator<S>::collect(ParameterValues v
                             .cwiseProduct(poses)
                             .rowwise()
                             .sum()
-                            .cwiseProduct(squared_weights(of.term, of.residuals, losses, cost));
+                            .cwiseProduct(detail::squared_weights(problem_.term(of.term),
+                                                                  of.residuals, losses, cost));
     of.residuals.jacobian = jacobian.leftCols(free) - poses * by_both[s];
   }
   return undefined;
@@ -285,7 +167,8 @@ NormalEquations OwnPosesEvaluator<S>::normal_equations(ParameterValues values, b
   NormalEquations total(derivatives ? free_.size() : 0);
   const auto undefined = collect(values, losses, Linearization::measured);
   for (const Rows& of : rows_) {
-    const Eigen::VectorXd w2 = squared_weights(of.term, of.residuals, losses, total.cost);
+    const Eigen::VectorXd w2 =
+        detail::squared_weights(problem_.term(of.term), of.residuals, losses, total.cost);
     if (!derivatives) continue;
     const Eigen::MatrixXd weighted = w2.asDiagonal() * of.residuals.jacobian;
     total.gradient.noalias() += weighted.transpose() * of.residuals.residual;

@@ -18,9 +18,8 @@
 //   kSettings, settings(observation)     numbers that come with each observation: intrinsics
 //   initial(settings)                    values of its parameters before the first step
 //   measurement(point, settings)         the part of a recorded point to keep, computed once
-//   kUsuallyFree, with_held(s, v)        the first parameters, and settings that contain the values of the others: then
-//                                        place() and predict() also take the first ones alone, and the others,
-//                                        while they are held, cost nothing
+//   kUsuallyFree, with_held(s, v)        how many parameters place() and predict() also take alone, and settings with
+//                                        the values of the others, which then cost nothing
 //   kOwnFrame                            features are in the sensor's frame, never in a virtual one
 //   kOriented                            features have an orientation
 //   predict(p, settings, parameters)     the pixel of a point in its frame: (2) pixels; not a number
@@ -32,8 +31,6 @@
 //                                        its settings begin with fx fy cx cy
 //   image                                a member of type ImageKind: raw or rectified images
 //   Corrected<Q>                         its own derivatives, in place of those by jets
-//
-// DepthCamera has all but predict().
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -76,11 +73,6 @@ template <class M>
   return 0;
 }
 template <class M>
-[[nodiscard]] consteval std::size_t count_usually_free() {
-  if constexpr (requires { M::kUsuallyFree; }) return M::kUsuallyFree;
-  return count_parameters<M>();
-}
-template <class M>
 [[nodiscard]] consteval std::size_t count_settings() {
   if constexpr (requires { M::kSettings; }) return M::kSettings;
   return 0;
@@ -106,7 +98,10 @@ template <class M>
 inline constexpr std::size_t kSettingsOf = detail::count_settings<M>();
 /// Number of its first parameters that are usually free, M::kUsuallyFree: all of them without it.
 template <class M>
-inline constexpr std::size_t kUsuallyFreeOf = detail::count_usually_free<M>();
+inline constexpr std::size_t kUsuallyFreeOf = [] {
+  if constexpr (requires { M::kUsuallyFree; }) return M::kUsuallyFree;
+  return kParametersOf<M>;
+}();
 /// True if features are in the sensor's own frame, never in a virtual one: M::kOwnFrame.
 template <class M>
 inline constexpr bool kIsInOwnFrame = detail::is_in_own_frame<M>();

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/geometry/median.hpp"
 #include "kinecal/trust/f_distribution.hpp"
+#include "kinecal/trust/far_samples.ipp"
 #include "kinecal/trust/influence.ipp"
 #include "kinecal/trust/least_trimmed_squares.ipp"
 #include "kinecal/trust/noise.hpp"
@@ -38,7 +38,7 @@ class CaptureSearch {
     if (!problem_.own_poses().empty()) {
       fit_without(bad_);
       mark(Tail::as_seen);
-      mark_samples();
+      bad_ = far_samples(problem_, fit_, sigma_);
       return worst();
     }
     fit_robustly();
@@ -155,25 +155,6 @@ class CaptureSearch {
         bad[static_cast<std::size_t>(f.sample)] = true;
     }
     bad_ = std::move(bad);
-  }
-
-  /// Of samples with poses of their own, those that are far off as a whole.  They hardly move the fit of the others;
-  /// and single corners at the border of a wide lens are often off by many times the noise, so that a fit without
-  /// these views would be a worse one.
-  void mark_samples() {
-    constexpr double kTimes = 4.0;  // the median of samples
-    std::vector<double> sum(bad_.size(), 0.0), left(bad_.size(), 0.0), typical;
-    for (const FeatureRows& f : features_) {
-      const auto s = static_cast<std::size_t>(f.sample);
-      sum[s] += distance(f) * distance(f) / (sigma_of(f) * sigma_of(f));
-      left[s] += f.size - fit_.used.segment(f.row, f.size).sum();
-    }
-    for (std::size_t s = 0; s < bad_.size(); ++s) {
-      sum[s] = left[s] > 0.0 ? std::sqrt(sum[s] / left[s]) : 0.0;
-      if (left[s] > 0.0) typical.push_back(sum[s]);
-    }
-    const double limit = typical.empty() ? HUGE_VAL : kTimes * std::max(1.0, median_of(typical));
-    for (std::size_t s = 0; s < bad_.size(); ++s) bad_[s] = sum[s] > limit;
   }
 
   [[nodiscard]] std::vector<CaptureError> worst() const {

@@ -19,47 +19,13 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/tools/cameras/start_cameras.hpp"
+#include "kinecal/tools/cameras/tried_lens.ipp"
 #include "kinecal/trust/folded_lens.hpp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
-
-/// A lens that was tried.
-struct TriedLens {
-  std::string name;
-  Config config;
-  std::vector<Sample> samples;
-  std::vector<double>
-      squares;        ///< mean square of each sample while it was held out; 0: it has no residuals
-  std::string fault;  ///< why it is out; empty: it is not
-
-  /// Root of the mean of the squares, pixels.
-  [[nodiscard]] double error() const {
-    double sum = 0.0, count = 0.0;
-    for (const double square : squares) {
-      sum += square;
-      count += square > 0.0 ? 1.0 : 0.0;
-    }
-    return count > 0.0 ? std::sqrt(sum / count) : 0.0;
-  }
-  /// True if its error is significantly smaller than that of another one.
-  [[nodiscard]] bool beats(const TriedLens& other) const {
-    double sum = 0.0, squared = 0.0, count = 0.0;
-    for (std::size_t s = 0; s < squares.size(); ++s) {
-      if (!(squares[s] > 0.0 && other.squares[s] > 0.0)) continue;
-      const double d = std::log(other.squares[s] / squares[s]);
-      sum += d;
-      squared += d * d;
-      count += 1.0;
-    }
-    if (count < 3.0) return false;
-    const double mean = sum / count, variance = squared / count - mean * mean;
-    constexpr double kSure = 2.0;  // standard errors
-    return mean > kSure * std::sqrt(std::max(0.0, variance) / (count - 1.0));
-  }
-};
 
 /// The configuration with a lens whose intrinsics are free.
 [[nodiscard]] Config with_lens(Config config, const ModelConfig& camera, const std::string& lens) {
@@ -77,6 +43,8 @@ struct TriedLens {
   for (const std::string_view name : lens_names()) others.merge(owned(std::string(name)));
   const std::set<std::string> own = owned(lens);
   for (StepConfig& step : config.steps) {
+    constexpr int kEnough = 100;  // iterations: a lens that does not fit is not worth more
+    step.max_num_iterations = std::min(step.max_num_iterations, kEnough);
     bool has_camera = false;
     for (ModelConfig& model : step.models) {
       if (model.name != camera.name) continue;
@@ -196,6 +164,9 @@ void find_lenses(Config& config, const Robot& robot, std::vector<Sample>& sample
         camera.place,
         fmt::format("sensor '{}': lens by the error on views held out: {}: taken as {}",
                     camera.name, detail::errors_text(tried), best->name));
+    for (std::size_t i = 0; i < config.steps.size(); ++i) {
+      best->config.steps[i].max_num_iterations = config.steps[i].max_num_iterations;
+    }
     config = best->config;
     samples = best->samples;
   }

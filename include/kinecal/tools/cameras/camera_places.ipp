@@ -1,0 +1,116 @@
+// Where the cameras of a rig stand, by samples that they share: for start_cameras.cpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinecal/geometry/rpy.hpp"
+#include "kinecal/problem/sampled_chain.hpp"
+#include "kinecal/tools/cameras/target_pairs.ipp"
+
+namespace kinecal::detail {
+
+/// A camera with the poses of a target in it, by sample.
+struct SeenTarget {
+  TargetPair pair;
+  std::map<std::size_t, Pose<double>> poses;  ///< camera_T_target
+};
+
+/// The pose of one camera in another from the samples that they share: that with the smallest sum of distances to the
+/// others.
+[[nodiscard]] inline std::optional<Pose<double>> between(const SeenTarget& a, const SeenTarget& b) {
+  if (a.pair.joint != b.pair.joint) return std::nullopt;
+  std::vector<Pose<double>> all;
+  for (const auto& [s, in_a] : a.poses) {
+    const auto in_b = b.poses.find(s);
+    if (in_b != b.poses.end()) all.push_back(in_a * in_b->second.inverse());
+  }
+  const auto distance = [](const Pose<double>& x, const Pose<double>& y) {
+    return (x.translation - y.translation).norm() +
+           log(Matrix3<double>(x.rotation.transpose() * y.rotation)).norm();
+  };
+  std::optional<Pose<double>> best;
+  double least = HUGE_VAL;
+  for (const Pose<double>& one : all) {
+    double sum = 0.0;
+    for (const Pose<double>& other : all) sum += distance(one, other);
+    if (sum >= least) continue;
+    least = sum;
+    best = one;
+  }
+  return best;
+}
+
+/// base_T_link in a sample, without corrections; nullopt if the sample lacks a joint.
+[[nodiscard]] inline std::optional<Pose<double>> pose_of_link(const Config& config,
+                                                              const Robot& robot,
+                                                              const std::string& link,
+                                                              const Sample& sample) {
+  const SampledChain chain(robot, make_chain(robot, config.base_link, link), ParameterTable{});
+  if (!chain.has_joints(sample)) return std::nullopt;
+  return chain.tip(sample, Corrections<double>(chain.chain().joints.size()));
+}
+
+/// True if a camera stands on the base by a fixed joint whose whole frame is free without an initial value.
+[[nodiscard]] inline bool is_placed_by_us(const Config& config, const Robot& robot,
+                                          const ModelConfig& camera) {
+  const Joint* joint = robot.has_link(camera.frame) ? robot.parent_joint(camera.frame) : nullptr;
+  if (joint == nullptr || joint->type != JointType::fixed || joint->parent != config.base_link) {
+    return false;
+  }
+  bool free = false;
+  for (const StepConfig& step : config.steps) {
+    for (const FreeFrameConfig& frame : step.free_frames) {
+      const bool whole =
+          std::all_of(frame.axes.begin(), frame.axes.end(), [](bool f) { return f; });
+      free = free || (frame.name == joint->name && whole);
+    }
+    for (const FrameInitialValueConfig& value : step.frame_initial_values) {
+      if (value.name == joint->name) return false;
+    }
+  }
+  return free;
+}
+
+/// base_T_camera of each camera that is fixed to the base, as far as the robot, or samples that it shares with a camera that
+/// is known, say.
+[[nodiscard]] inline std::map<std::string, Pose<double>> place_cameras(
+    Config& config, const Robot& robot, const std::vector<SeenTarget>& seen) {
+  std::map<std::string, Pose<double>> known;
+  std::vector<const SeenTarget*> open;
+  for (const SeenTarget& of : seen) {
+    const ModelConfig& camera = *of.pair.camera;
+    if (is_placed_by_us(config, robot, camera)) {
+      open.push_back(&of);
+    } else if (const RuntimeChain chain = make_chain(robot, config.base_link, camera.frame);
+               chain.joints.empty()) {
+      known.emplace(camera.name, chain.tail);
+    }
+  }
+  for (bool found = true; found;) {
+    found = false;
+    for (const SeenTarget& of : seen) {
+      const auto at = known.find(of.pair.camera->name);
+      if (at == known.end()) continue;
+      for (const SeenTarget* next : open) {
+        const auto a_T_b = between(of, *next);
+        if (!a_T_b || known.contains(next->pair.camera->name)) continue;
+        const Pose<double> base_T_camera = at->second * *a_T_b;
+        known.emplace(next->pair.camera->name, base_T_camera);
+        const Joint& joint = *robot.parent_joint(next->pair.camera->frame);
+        const Pose<double> frame = joint.origin.inverse() * base_T_camera;
+        config.steps.front().frame_initial_values.push_back(
+            {joint.name, frame.translation, rpy_from_rotation(frame.rotation), config.place});
+        found = true;
+      }
+    }
+  }
+  return known;
+}
+
+}  // namespace kinecal::detail
