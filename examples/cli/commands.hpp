@@ -89,9 +89,10 @@ struct InitOptions {
   std::string base, arm, camera, camera_type, camera_name;  ///< empty: ask, or propose
   std::string target_frame, tracker_frame;                  ///< the same
   std::vector<std::string> targets;
-  std::string poses;     ///< table of poses of the flange, instead of a URDF; or empty
-  std::string form;      ///< of these poses; empty: by the names of columns
-  bool inverse = false;  ///< they are those of the base in the flange
+  std::vector<std::string> cameras;  ///< names of cameras alone, instead of a robot
+  std::string poses;                 ///< table of poses of the flange, instead of a URDF; or empty
+  std::string form;                  ///< of these poses; empty: by the names of columns
+  bool inverse = false;              ///< they are those of the base in the flange
   std::string corners, target_points;  ///< tables beside them; empty: photographs
   bool force = false;                  ///< replace a file
 };
@@ -99,6 +100,9 @@ struct InitOptions {
 /// Writes a URDF, columns.yaml, a configuration and, for photographs, capture.yaml from poses of a
 /// flange.
 int init_hand_eye(const InitOptions& options);
+
+/// Writes the configuration and capture.yaml of a calibration of cameras alone.
+int init_cameras(const InitOptions& options);
 
 /// Writes a first configuration from a URDF and a few answers.
 int init(const InitOptions& options);

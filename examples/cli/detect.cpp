@@ -37,7 +37,7 @@ namespace {
 /// @throws InputError  if options do not go together
 void check_options(const DetectOptions& options) {
   if (options.images.empty() && options.bags.empty()) {
-    throw InputError("give photographs (--images, --poses and --frame) or recordings (--bag)");
+    throw InputError("give photographs (--images and --frame) or recordings (--bag)");
   }
   if (!options.images.empty() && options.frame.empty()) {
     throw InputError("photographs need the name of the camera's frame: --frame");

@@ -405,8 +405,12 @@ std::string joint_zeros_text(const Robot& robot, const std::string& urdf_text,
 
 int init(const InitOptions& options) {
   if (!options.poses.empty()) return init_hand_eye(options);
+  if (!options.cameras.empty()) return init_cameras(options);
   if (options.urdf.empty()) {
-    throw InputError("give the robot: --urdf, or the poses of its flange: --poses");
+    throw InputError(
+        "give the robot: --urdf; or the poses of its flange: --poses; or the names of cameras "
+        "alone: "
+        "--cameras");
   }
   const auto check = [&] { check_output(options.output, {options.urdf}, options.force); };
   check();  // before any question

@@ -268,6 +268,14 @@ void add_init(CLI::App& command, InitOptions& options) {
           ->excludes(urdf)
           ->type_name("FILE");
   command
+      .add_option("--cameras", options.cameras,
+                  "instead of a robot: names of cameras that see a board which somebody holds; "
+                  "intrinsics, lenses and where they stand are found from photographs alone")
+      ->delimiter(',')
+      ->excludes(urdf)
+      ->excludes(poses)
+      ->type_name("NAME");
+  command
       .add_option("--form", options.form,
                   "what the columns of --poses are: quaternion_xyzw, quaternion_wxyz, "
                   "rotation_vector, rpy, matrix, ur, abb, kuka, fanuc, fixed_xyz, euler_zyx, ...; "
@@ -533,9 +541,9 @@ void add_detect(CLI::App& command, DetectOptions& options) {
           .add_option(
               "--poses", options.poses,
               "table of joint positions for --images, radians and metres: a column for each "
-              "joint, and 'image' for the file's name")
+              "joint, and 'image' for the file's name; without it, the photographs are of a camera "
+              "alone")
           ->type_name("FILE");
-  images->needs(poses);
   poses->needs(images);
   command.add_option("--columns", options.columns, "what the table's columns mean, as for convert")
       ->needs(poses)

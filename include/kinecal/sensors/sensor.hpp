@@ -18,8 +18,7 @@
 //   kSettings, settings(observation)     numbers that come with each observation: intrinsics
 //   initial(settings)                    values of its parameters before the first step
 //   measurement(point, settings)         the part of a recorded point to keep, computed once
-//   kUsuallyFree, with_held(s, v)        how many parameters place() and predict() also take alone, and settings with
-//                                        the values of the others, which then cost nothing
+//   kUsuallyFree, with_held(s, v)        so many parameters suffice; settings with the values of the others
 //   kOwnFrame                            features are in the sensor's frame, never in a virtual one
 //   kOriented                            features have an orientation
 //   predict(p, settings, parameters)     the pixel of a point in its frame: (2) pixels; not a number

@@ -36,6 +36,30 @@ namespace {
   return nullptr;
 }
 
+/// Reports images of two sizes.
+/// @returns  false if there are
+[[nodiscard]] bool check_sizes(const ModelConfig& camera, const std::vector<Sample>& samples,
+                               Diagnostics& diagnostics) {
+  const Sample* first = nullptr;
+  const auto size = [&](const Sample& sample) {
+    const CameraInfo& info = *sample.observation(camera.name)->camera;
+    return std::pair(info.width, info.height);
+  };
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(camera.name);
+    if (seen == nullptr || !seen->camera) continue;
+    if (first == nullptr) first = &sample;
+    if (size(sample) == size(*first)) continue;
+    diagnostics.error(
+        camera.place,
+        fmt::format("camera '{}': images of two sizes: {}x{} at {}, {}x{} at {}", camera.name,
+                    size(*first).first, size(*first).second, first->source, size(sample).first,
+                    size(sample).second, sample.source));
+    return false;
+  }
+  return true;
+}
+
 /// The size of a camera's image: as recorded, or as far as corners lie around its middle.
 [[nodiscard]] std::array<double, 2> image_size_of(const CameraInfo* info,
                                                   std::span<const TargetView> views) {
@@ -127,6 +151,7 @@ void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samp
     std::vector<TargetView> views;
     for (const Sample& sample : samples) views.push_back(detail::target_view(pair, sample));
     const CameraInfo* info = detail::info_of(pair.camera->name, samples);
+    if (!detail::check_sizes(*pair.camera, samples, diagnostics)) continue;
     detail::SeenTarget of{pair, {}};
     if (info != nullptr && (info->k[0] > 0.0 || info->p[0] > 0.0)) {
       of.poses = detail::poses_by(*info, pair.camera->image, views);

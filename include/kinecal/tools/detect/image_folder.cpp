@@ -95,6 +95,18 @@ namespace {
   return path;
 }
 
+/// Photographs of which nobody knows where the robot was, or that are of no robot.
+[[nodiscard]] std::vector<PosedImage> images_alone(const ImageFolder& folder,
+                                                   const std::vector<std::string>& names,
+                                                   Diagnostics& diagnostics) {
+  std::vector<PosedImage> images;
+  for (const std::string& name : names) {
+    const std::string path = (std::filesystem::path(folder.images) / name).string();
+    images.push_back({path, depth_of(folder, name, path, diagnostics), {}, path});
+  }
+  return images;
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -103,6 +115,7 @@ std::vector<PosedImage> list_images(const ImageFolder& folder, Diagnostics& diag
   if (!folder.depth.empty() && !std::filesystem::is_directory(folder.depth)) {
     throw InputError(folder.depth + ": is not a folder with images of depth");
   }
+  if (folder.table.empty()) return detail::images_alone(folder, names, diagnostics);
   const bool of_files = is_pose_folder(folder.table);
   const std::string text = read_pose_table(folder.table);
   CsvMapping mapping;
@@ -147,6 +160,11 @@ View read_view(const PosedImage& image, const std::optional<CameraInfo>& camera,
   view.camera = camera;
   view.image = read_image(image.path);
   view.joints = image.joints;
+  if (!camera && image.joints.names.empty() && image.joints.poses.empty()) {
+    view.camera.emplace();  // of a camera alone: its size is all that is known
+    view.camera->width = view.image.width;
+    view.camera->height = view.image.height;
+  }
   if (image.depth.empty()) return view;
   const DepthImage depth = read_depth(image.depth);
   if (depth.width != view.image.width || depth.height != view.image.height) {

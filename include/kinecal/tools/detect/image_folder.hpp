@@ -20,7 +20,7 @@ namespace kinecal {
 struct ImageFolder {
   std::string images;   ///< folder of PNG, JPEG, BMP or TIFF files
   std::string table;    ///< of joint positions, CSV; or a folder with a pose for each image, see
-                        ///< files/poses/pose_table.hpp
+                        ///< files/poses/pose_table.hpp; empty: nobody knows where the robot was
   std::string columns;  ///< meaning of its columns; empty: each is a joint, except `image`
   std::string depth;    ///< folder of depth images, same names except the extension; empty: none
 };
@@ -40,6 +40,7 @@ struct PosedImage {
                                                   Diagnostics& diagnostics);
 
 /// Reads a photograph as a view of a camera.
+/// @param camera       nullopt: unknown; of an image without joints and poses, its camera_info is its size
 /// @param frame        of the camera
 /// @throws InputError  if a file is damaged, the sizes of depth and image differ, or points cannot
 ///                     be computed because there is no camera

@@ -1,0 +1,73 @@
+// kinecal init --cameras: a calibration of cameras alone, from photographs of a board.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "kinecal/config/own_frames.hpp"
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/text_file.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/text/shell_word.hpp"
+#include "kinecal/tools/cameras/initial_cameras.hpp"
+#include "kinecal/tools/init/initial_capture.hpp"
+#include "output_file.hpp"
+#include "terminal.hpp"
+
+namespace kinecal::cli {
+
+int init_cameras(const InitOptions& options) {
+  const auto target =
+      options.targets.size() == 1 ? init_target(options.targets.front()) : std::nullopt;
+  if (!target || !is_board(target->target)) {
+    throw InputError("--target: cameras alone see a board: checkerboard, apriltag or charuco");
+  }
+  if (!options.from.empty()) throw InputError("--from does not go with --cameras");
+  const std::filesystem::path folder = folder_of(options.output);
+  const std::string capture = !options.capture.empty() ? options.capture
+                              : folder == "."          ? "capture.yaml"
+                                                       : (folder / "capture.yaml").string();
+  for (const std::string& output : {options.output, capture}) {
+    check_output(output, {}, options.force);
+  }
+  std::string text;
+  try {
+    text = initial_cameras(options.cameras);
+  } catch (const std::invalid_argument& e) {
+    throw InputError(fmt::format("--cameras: {}", e.what()));
+  }
+  Diagnostics diagnostics;
+  const Config config = parse_config(text, options.output, diagnostics);
+  print_or_throw(diagnostics);
+  const Robot robot = parse_urdf(urdf_of_cameras(config), "cameras");
+  InitAnswers answers;
+  answers.target = InitTarget::world_checkerboard;
+  answers.board = target->board;
+  answers.base = answers.camera = answers.camera_name = options.cameras.front();
+  answers.camera_type = "camera2d";
+  answers.target_frame = answers.holder = "board";
+  const std::string finder = initial_capture(robot, answers);
+  write_text_file(options.output, text);
+  write_text_file(capture, finder);
+  say("wrote {} and {}\n  fill in what is zero in {}: its sizes decide the scale\n", options.output,
+      capture, capture);
+  const std::string calibrate =
+      fmt::format("kinecal calibrate --config {} --samples samples.yaml --output calibrated",
+                  shell_word(options.output));
+  if (options.cameras.size() > 1) {
+    say("next: {}, with samples in which {} see the board\n", calibrate,
+        fmt::join(options.cameras, " and "));
+  } else {
+    say("next: kinecal detect {} --images images --frame {} -o samples.yaml && {}\n",
+        shell_word(capture), shell_word(options.cameras.front()), calibrate);
+  }
+  return kDone;
+}
+
+}  // namespace kinecal::cli
