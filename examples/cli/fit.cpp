@@ -44,12 +44,19 @@ Fit fit(const Input& input, Calibration calibration, const CalibrateOptions& opt
   Fit fitted{std::move(calibration), {}, {}, {}};
   JudgedResult judged = calibrate_and_judge(fitted.calibration, input.samples, procedure);
   fitted.samples = used_samples(judged, input.samples);
+  const AnyProblem& problem = *fitted.calibration.steps.back().problem;
+  for (std::size_t s = 0; s < problem.poses_of_samples().size(); ++s) {
+    for (std::size_t f = 0; f < problem.own_poses().size(); ++f) {
+      fitted.samples[s].poses[problem.own_poses()[f]] = problem.poses_of_samples()[s][f];
+    }
+  }
   for (const LeftOutSample& left : judged.left_out) {
     fitted.left_out.push_back(input.samples[static_cast<std::size_t>(left.number - 1)]);
   }
   fitted.findings = findings_of(input.robot, fitted.calibration, std::move(judged), fitted.samples);
   fitted.findings.images = images_of(input.config);
   fitted.findings.lenses = lenses_of(input.config);
+  fitted.findings.has_own_poses = !input.config.per_sample.empty();
   return fitted;
 }
 

@@ -181,6 +181,13 @@ const FittedBlock& fitted_block(const StoredResult& result, const std::string& n
 }  // namespace
 
 NewSamples read_new_samples(const StoredResult& result, const NewSampleOptions& options) {
+  if (!result.config.per_sample.empty()) {
+    throw InputError(
+        fmt::format("{}: its target has a pose of its own in each sample (per_sample: {}), so new "
+                    "samples do not say whether "
+                    "the result holds; calibrate them, and compare the files",
+                    result.folder, result.config.per_sample.front().name));
+  }
   NewSamples fresh;
   fresh.samples = read_recordings(options.samples, fresh.diagnostics).samples;
   for (const std::string& camera : options.cameras) {

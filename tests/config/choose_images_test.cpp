@@ -97,13 +97,13 @@ TEST(ChooseImages, AKeyIsObeyedInAllSteps) {
 TEST(ChooseImages, ALensThatCannotBeUsedIsRefusedForRawImagesOnly) {
   Scenario scenario = board(lens(), ImageKind::rectified);
   for (Sample& sample : scenario.samples) {
-    sample.observations[1].camera->distortion_model = "equidistant";
+    sample.observations[1].camera->distortion_model = "bowl";
   }
   Diagnostics refused;
   choose_images(scenario.config, scenario.robot, scenario.samples, refused);
   EXPECT_THAT(refused.errors,
               ElementsAre(AllOf(HasSubstr("sensor 'eye': its lens has the distortion model "
-                                          "'equidistant', which raw images cannot have"),
+                                          "'bowl', which raw images cannot have"),
                                 HasSubstr("write 'image: rectified' in the model"))));
   EXPECT_TRUE(calibrate(scenario.calibration()).converged) << "its pixels count as rectified";
   scenario.config.steps[0].models[1].image = ImageKind::raw;

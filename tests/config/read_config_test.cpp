@@ -747,7 +747,7 @@ TEST(ReadConfig, ModelsOfTheWrongKindAreErrors) {
                           " it must be a camera2d, which observes pixels"));
   EXPECT_THAT(errors(with_block("type: chain3d_to_camera2d, model_3d: eye, model_2d: eye")),
               Contains("calibrate.yaml:10: error block 'block': model_3d 'eye' is a camera2d; it "
-                       "must be a chain3d or camera3d, which observe points"));
+                       "must be a chain3d or camera3d or board, which observe points"));
   for (const std::string type : {"chain3d_to_chain3d", "plane_to_plane"}) {
     EXPECT_THAT(errors(with_block("type: " + type + ", model_a: arm, model_b: eye")),
                 ElementsAre(HasSubstr("calibrate.yaml:10: error block 'block': model_b 'eye' is a "

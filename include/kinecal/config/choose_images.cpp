@@ -36,6 +36,7 @@ struct ImageOptions {
 /// True if only the distortion keeps a camera_info from describing a raw image.
 [[nodiscard]] bool is_only_lens(const AnySensor& as_raw, Observation seen) {
   seen.camera->d.clear();
+  seen.camera->distortion_model.clear();
   try {
     (void)as_raw.settings(seen);
     return true;
@@ -93,7 +94,7 @@ void choose_image(Config& config, const Robot& robot, std::span<const Sample> sa
           fmt::format("{}: its lens has the distortion model '{}', which raw images cannot have "
                       "here, and the configuration does not say that its pixels are of rectified "
                       "images; rectify the images and write 'image: rectified' in the model, or "
-                      "give it a plumb_bob or rational_polynomial model",
+                      "give it another 'lens' and free its coefficients",
                       sensor, options.lens));
     }
     return;

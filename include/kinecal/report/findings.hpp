@@ -27,6 +27,7 @@ struct Findings : JudgedResult {
   ReportedSearch search = {};  ///< that chose the free parameters; without steps: there was none
   RecordedPoses poses = {};    ///< of the samples that were used
   ProgramCall call = {};       ///< how the program was called
+  bool has_own_poses = false;  ///< a target has a pose of its own in each sample
 };
 
 /// What is reported of a judged calibration.

@@ -79,6 +79,10 @@ std::string next_step(const Findings& findings) {
            " named under the verdict, and calibrate again";
   }
   if (judgement.verdict == Grade::good) {
+    if (findings.has_own_poses) {  // nothing says where the target is in new samples
+      return "use the files in " + (call.output.empty() ? "the output" : call.output) +
+             ", and calibrate other samples, too: the results should agree";
+    }
     if (call.output.empty()) return "verify the result with a few new poses";
     return "use " + call.output +
            "/calibrated.urdf, and verify it with a few new poses:\n"
