@@ -43,12 +43,15 @@ struct Limits {
   return {care, kRefused * kMost};
 }
 
-/// True for a coefficient of a camera's lens.
-[[nodiscard]] inline bool is_lens_coefficient(const AnyProblem& problem, int parameter) {
+/// True for a coefficient of a camera's lens; where a target has a pose of its own in each sample, for all
+/// intrinsics, too: nobody knows them then.
+[[nodiscard]] inline bool is_unknown_lens(const AnyProblem& problem, int parameter) {
+  const std::size_t first = problem.own_poses().empty() ? kIntrinsics : 0;
   return std::any_of(problem.sensors().begin(), problem.sensors().end(), [&](const auto& sensor) {
     const std::vector<int>& own = sensor.parameters();
-    return sensor.sensor().delivers(Quantity::pixel) && own.size() > kIntrinsics &&
-           std::find(own.begin() + kIntrinsics, own.end(), parameter) != own.end();
+    const auto from = own.begin() + static_cast<std::ptrdiff_t>(std::min(first, own.size()));
+    return sensor.sensor().delivers(Quantity::pixel) &&
+           std::find(from, own.end(), parameter) != own.end();
   });
 }
 
@@ -71,7 +74,7 @@ struct Limits {
     if (p.unit == "m") return moving ? plausible_length_change(problem, joint) : Limits{0.2, 1.0};
     return moving ? Limits{15.0 * kDegree, 60.0 * kDegree} : Limits{30.0 * kDegree, kNever};
   }
-  if (problem.frames().contains(owner) || is_lens_coefficient(problem, parameter)) {
+  if (problem.frames().contains(owner) || is_unknown_lens(problem, parameter)) {
     return {kNever, kNever};
   }
   if (p.unit == "m") return {0.1, kNever};
