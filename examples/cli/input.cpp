@@ -176,8 +176,10 @@ Input read_input(const InputOptions& options) {
       add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
     }
     input.robot = with_own_frames(input.robot, input.config, input.samples, diagnostics);
-    find_lenses(input.config, input.robot, input.samples, diagnostics);
-    start_cameras(input.config, input.robot, input.samples, diagnostics);
+    const auto is_good = [&] { return diagnostics.errors.size() == before; };
+    if (is_good()) find_lenses(input.config, input.robot, input.samples, diagnostics);
+    if (is_good()) start_cameras(input.config, input.robot, input.samples, diagnostics);
+    if (!is_good()) return input;
     choose_lenses(input.config, input.samples, diagnostics);
     choose_images(input.config, input.robot, input.samples, diagnostics);
     is_open ? leave_open(input, options) : assemble_input(input, options);

@@ -156,8 +156,15 @@ void find_lenses(Config& config, const Robot& robot, std::vector<Sample>& sample
              });
     });
     if (best == tried.end()) {
-      diagnostics.error(camera.place, fmt::format("sensor '{}': no lens fits: {}", camera.name,
-                                                  detail::errors_text(tried)));
+      const std::string& fault = tried.front().fault;
+      const bool same = std::all_of(tried.begin(), tried.end(),
+                                    [&](const auto& lens) { return lens.fault == fault; });
+      if (same) {
+        diagnostics.errors.push_back(fault);
+      } else {
+        diagnostics.error(camera.place, fmt::format("sensor '{}': no lens fits: {}", camera.name,
+                                                    detail::errors_text(tried)));
+      }
       continue;
     }
     diagnostics.note(
