@@ -164,6 +164,11 @@ class LogRun {
     check_results(options_);
     first_ = read(0);
     print_or_throw(first_.diagnostics);
+    if (!first_.config.per_sample.empty()) {
+      throw InputError(
+          "per_sample: calibrate-log does not take frames with a pose of their own in each sample; "
+          "calibrate does");
+    }
     check_robot_files(options_, first_);
   }
 

@@ -3,6 +3,7 @@
 #include "kinecal/trust/online.hpp"
 
 #include <limits>
+#include <stdexcept>
 
 #include "kinecal/trust/online_misfits.ipp"
 #include "kinecal/trust/online_moves.ipp"
@@ -13,6 +14,9 @@ OnlineCalibration::OnlineCalibration(MakeProblem make, const FreeSet& free, Para
                                      const FrameOnRobot& frame, const FrameOnRobot& in)
     : inside_(new Inside{std::move(make), free, {values.begin(), values.end()}, frame, in}) {
   inside_->problem->check(free);
+  if (!inside_->problem->own_poses().empty()) {
+    throw std::invalid_argument("poses that samples have of their own are not calibrated online");
+  }
   (void)detail::PoseDerivative(*inside_->problem, free, inside_->values, frame, in);
 }
 

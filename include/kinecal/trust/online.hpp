@@ -61,7 +61,8 @@ class OnlineCalibration {
   /// @param values  of all parameters of the table: near the solution
   /// @param frame   whose pose is wanted: the gripper
   /// @param in      the frame in which it is given: the camera
-  /// @throws RobotError  if a link does not exist
+  /// @throws RobotError             if a link does not exist
+  /// @throws std::invalid_argument  if samples have poses of their own: AnyProblem::give_own_poses()
   OnlineCalibration(MakeProblem make, const FreeSet& free, ParameterValues values,
                     const FrameOnRobot& frame, const FrameOnRobot& in);
   ~OnlineCalibration();
