@@ -57,14 +57,13 @@ struct RecordedLenses {
 /// Replaces the lens of the samples by one without distortion.
 void replace_lens(std::vector<Sample>& samples, const std::string& camera,
                   const std::string& lens) {
+  const auto sensor = any_built_in(lens_camera(lens));
+  const std::size_t coefficients = sensor->parameters().size() - kIntrinsics;
   for (Sample& sample : samples) {
     for (Observation& seen : sample.observations) {
       if (seen.sensor != camera || !seen.camera) continue;
       seen.camera->distortion_model = lens == ThinPrism::kName ? RationalPolynomial::kName : lens;
-      seen.camera->d.assign(
-          sensor_of({.name = "", .type = "camera2d", .lens = lens})->parameters().size() -
-              kIntrinsics,
-          0.0);
+      seen.camera->d.assign(coefficients, 0.0);
     }
   }
 }
