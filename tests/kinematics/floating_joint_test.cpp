@@ -13,20 +13,20 @@
 namespace kinecal {
 namespace {
 
-constexpr double kRounding = 1e-14;  // a dozen products of numbers of size one
+constexpr double kOfProducts = 1e-14;  // a dozen products of numbers of size one
 
-double distance(const Pose<double>& a, const Pose<double>& b) {
+double pose_distance(const Pose<double>& a, const Pose<double>& b) {
   return (a.rotation - b.rotation).norm() + (a.translation - b.translation).norm();
 }
 
-Pose<double> random_pose(std::mt19937& random) {
+Pose<double> random_floating_pose(std::mt19937& random) {
   std::normal_distribution<double> normal;
   const Vector3<double> w(normal(random), normal(random), normal(random));
   return {exp(w), {normal(random), normal(random), normal(random)}};
 }
 
 /// Positions of the coordinates of "loose"; other joints stand at 0.4.
-auto positions_of(const Pose<double>& measured) {
+auto floating_at(const Pose<double>& measured) {
   return [at = floating_positions(measured)](const std::string& joint) {
     const auto part = floating_coordinate(joint);
     return part && part->joint == "loose" ? at[part->index] : 0.4;
@@ -36,8 +36,8 @@ auto positions_of(const Pose<double>& measured) {
 TEST(FloatingJoint, ItsCoordinatesGiveThePoseAgain) {
   std::mt19937 random(1);
   for (int i = 0; i < 100; ++i) {
-    const Pose<double> pose = random_pose(random);
-    EXPECT_LE(distance(floating_pose(floating_positions(pose)), pose), kRounding);
+    const Pose<double> pose = random_floating_pose(random);
+    EXPECT_LE(pose_distance(floating_pose(floating_positions(pose)), pose), kOfProducts);
   }
 }
 
@@ -45,7 +45,7 @@ TEST(FloatingJoint, ItsCoordinatesGiveThePoseAgainNearAndAtAPitchOfARightAngle) 
   constexpr double kRight = std::numbers::pi / 2;
   for (const double pitch : {kRight, -kRight, kRight - 1e-13, -kRight + 1e-9, kRight - 1e-6}) {
     const Pose<double> pose{rotation_from_rpy({0.3, pitch, -2.0}), {1.0, -2.0, 3.0}};
-    EXPECT_LE(distance(floating_pose(floating_positions(pose)), pose), 3e-12) << pitch;
+    EXPECT_LE(pose_distance(floating_pose(floating_positions(pose)), pose), 3e-12) << pitch;
   }
 }
 
@@ -66,19 +66,19 @@ TEST(FloatingJoint, AChainPassesItByItsMeasuredPoseBothWays) {
   const RuntimeChain back = make_chain(robot, "ball", "hand");
   const RuntimeChain to_hand = make_chain(robot, "base_link", "hand");
   for (int i = 0; i < 20; ++i) {
-    const Pose<double> measured = random_pose(random);
-    const auto at = positions_of(measured);
+    const Pose<double> measured = random_floating_pose(random);
+    const auto at = floating_at(measured);
     const Pose<double> base_T_hand = forward_kinematics(to_hand, at);
     const Pose<double> expected = base_T_hand.inverse() * (robot.joint("loose").origin * measured);
-    EXPECT_LE(distance(forward_kinematics(there, at), expected), kRounding);
-    EXPECT_LE(distance(forward_kinematics(back, at), expected.inverse()), kRounding);
+    EXPECT_LE(pose_distance(forward_kinematics(there, at), expected), kOfProducts);
+    EXPECT_LE(pose_distance(forward_kinematics(back, at), expected.inverse()), kOfProducts);
   }
 }
 
 TEST(FloatingJoint, ItsCorrectionStandsOnceAfterTheMeasuredPose) {
   const Robot robot = test::mobile_manipulator();
   std::mt19937 random(3);
-  const Pose<double> measured = random_pose(random);
+  const Pose<double> measured = random_floating_pose(random);
   const Vector3<double> t(0.01, -0.02, 0.03), w(0.1, -0.2, 0.3);
   const Pose<double> base_T_ball = robot.joint("loose").origin * measured * Pose<double>{exp(w), t};
   for (const bool reversed : {false, true}) {
@@ -93,8 +93,8 @@ TEST(FloatingJoint, ItsCorrectionStandsOnceAfterTheMeasuredPose) {
       corrections[i].set_frame(t, w);
     }
     EXPECT_EQ(corrected, 1);
-    const Pose<double> tip = forward_kinematics(chain, positions_of(measured), corrections);
-    EXPECT_LE(distance(tip, reversed ? base_T_ball.inverse() : base_T_ball), kRounding);
+    const Pose<double> tip = forward_kinematics(chain, floating_at(measured), corrections);
+    EXPECT_LE(pose_distance(tip, reversed ? base_T_ball.inverse() : base_T_ball), kOfProducts);
   }
 }
 
