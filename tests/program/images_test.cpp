@@ -74,15 +74,14 @@ TEST_F(ImagesProgram, AKeyIsObeyedEvenIfItIsWrong) {
 }
 
 TEST_F(ImagesProgram, ALensThatCannotBeUsedIsRefusedForRawImagesOnly) {
-  const test::Outcome rectified =
-      calibrate(ImageKind::rectified, ", image: rectified", "equidistant");
+  const test::Outcome rectified = calibrate(ImageKind::rectified, ", image: rectified", "bowl");
   EXPECT_EQ(rectified.code, 0) << rectified.err;
-  const test::Outcome unknown = calibrate(ImageKind::rectified, "", "equidistant");
+  const test::Outcome unknown = calibrate(ImageKind::rectified, "", "bowl");
   EXPECT_EQ(unknown.code, 1);
-  EXPECT_THAT(unknown.err, HasSubstr("its lens has the distortion model 'equidistant', which raw"));
-  const test::Outcome raw = calibrate(ImageKind::rectified, ", image: raw", "equidistant");
+  EXPECT_THAT(unknown.err, HasSubstr("its lens has the distortion model 'bowl', which raw"));
+  const test::Outcome raw = calibrate(ImageKind::rectified, ", image: raw", "bowl");
   EXPECT_EQ(raw.code, 1);
-  EXPECT_THAT(raw.err, HasSubstr("distortion model 'equidistant' is not supported in raw images"));
+  EXPECT_THAT(raw.err, HasSubstr("distortion model 'bowl' is not supported in raw images"));
 }
 
 }  // namespace

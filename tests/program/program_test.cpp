@@ -978,11 +978,11 @@ TEST_F(Program, RefusesADistortionModelItDoesNotKnow) {
         "type: chain3d_to_camera2d\n   model_3d: arm\n   model_2d: camera");
   auto all = samples();
   for (Sample& sample : all) {
-    sample.observations[0].camera->distortion_model = "equidistant";
+    sample.observations[0].camera->distortion_model = "bowl";
     sample.observations[0].camera->d = {0.1, 0.0, 0.0, 0.0};
   }
   write_all(all);
-  expect_refused(AllOf(HasSubstr("c.yaml:6"), HasSubstr("distortion model 'equidistant'")));
+  expect_refused(AllOf(HasSubstr("c.yaml:6"), HasSubstr("distortion model 'bowl'")));
 }
 
 TEST_F(Program, AnObservationWithoutFeaturesDoesNotCount) {
