@@ -14,6 +14,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 
 #include "kinecal/sensors/camera_image.hpp"
 #include "kinecal/sensors/double_sphere.hpp"
@@ -28,6 +29,16 @@ namespace kinecal {
 /// Number of a camera's parameters before those of its lens: fx fy cx cy.
 inline constexpr std::size_t kIntrinsics = 4;
 
+namespace detail {
+/// The parameters of a camera: fx fy cx cy, and the coefficients of its lens.
+template <class L, std::size_t... I>
+[[nodiscard]] constexpr std::array<ParameterInfo, kIntrinsics + sizeof...(I)> camera_parameters(
+    std::index_sequence<I...>) {
+  return {ParameterInfo{"fx"}, ParameterInfo{"fy"}, ParameterInfo{"cx"}, ParameterInfo{"cy"},
+          L::kCoefficients[I]...};
+}
+}  // namespace detail
+
 /// A camera with a lens.
 template <LensModel L>
 struct LensCamera {
@@ -40,12 +51,8 @@ struct LensCamera {
   static constexpr std::size_t kSettings = 4 + kCoefficients;            ///< fx fy cx cy, D
   static constexpr bool kOwnFrame = true;  ///< features are in the optical frame
   /// fx fy cx cy and the coefficients.
-  static constexpr std::array kParameters = [] {
-    std::array<ParameterInfo, 4 + kCoefficients> all = {ParameterInfo{"fx"}, ParameterInfo{"fy"},
-                                                        ParameterInfo{"cx"}, ParameterInfo{"cy"}};
-    for (std::size_t i = 0; i < kCoefficients; ++i) all[4 + i] = L::kCoefficients[i];
-    return all;
-  }();
+  static constexpr std::array kParameters =
+      detail::camera_parameters<L>(std::make_index_sequence<kCoefficients>());
   using Settings = std::array<double, kSettings>;  ///< of an observation
 
   /// The recorded settings: of a raw image from K and D, of a rectified one from P.

@@ -55,7 +55,7 @@ TEST(TransformFiles, HaveThePoseOfTheCameraInEachForm) {
 TEST(TransformFiles, TheJointIsOneOfAUrdf) {
   const std::string urdf = "<robot name='r'><link name='flange'/><link name='my camera'/>" +
                            files(true).at("camera_joint.xml") + "</robot>";
-  const Joint& joint = parse_urdf(urdf, "r.urdf").joint("camera_joint");
+  const Joint joint = parse_urdf(urdf, "r.urdf").joint("camera_joint");
   EXPECT_EQ(joint.parent, "flange");
   EXPECT_EQ(joint.origin.translation, Vector3<double>(0.5, 0.25, 0.0));
   EXPECT_NEAR(joint.origin.rotation(0, 0), -1.0, 1e-15);
