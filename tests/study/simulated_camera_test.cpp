@@ -136,5 +136,12 @@ TEST(SimulatedCamera, BlurKeepsTheLight) {
   EXPECT_NEAR(view.image(200, 100), 2000.0 / (2.0 * std::numbers::pi * 1.5 * 1.5), 2.0);
 }
 
+TEST(SimulatedLens, IsThatOfAPinhole) {
+  SimulatedCamera camera;
+  camera.info.distortion_model = "equidistant";
+  camera.info.d = {0.1, 0.0, 0.0, 0.0};
+  EXPECT_THROW((void)SimulatedLens(camera), SettingsError);
+}
+
 }  // namespace
 }  // namespace kinecal

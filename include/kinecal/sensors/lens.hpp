@@ -22,12 +22,12 @@ class Lens {
                 std::span<const double> errors = {});
 
   /// The pixel at which a point appears.
-  /// @param p  (3) metres, in the optical frame; z > 0
+  /// @param p  (3) metres, in the optical frame; not a number where the lens does not see it
   [[nodiscard]] Eigen::Vector2d project(const Vector3<double>& p) const {
     return camera_->predict(p, settings_, errors_);
   }
   /// What a pixel shows.
-  /// @returns  (3) direction (x, y, 1) in the optical frame
+  /// @returns  (3) direction in the optical frame: (x, y, 1) of a pinhole, of another lens any length
   [[nodiscard]] Vector3<double> ray(double u, double v) const {
     return camera_->place({u, v, 0.0}, settings_, errors_);
   }

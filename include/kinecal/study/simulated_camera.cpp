@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
+
+#include "kinecal/sensors/lens_names.hpp"
 
 namespace kinecal {
 
@@ -21,8 +24,26 @@ CameraInfo typical_camera_info() {
   return info;
 }
 
+namespace detail {
+namespace {
+
+/// The camera_info of a pinhole, with or without distortion: pictures are cast along rays (x, y, 1).
+/// @throws SettingsError  of another lens
+[[nodiscard]] const CameraInfo& pinhole_info(const SimulatedCamera& camera) {
+  const std::string lens = is_raw(camera.info, camera.image) ? lens_of(camera.info) : "plumb_bob";
+  if (lens == "equidistant" || lens == "double_sphere") {
+    throw SettingsError(
+        "cameras are simulated with pinholes, with or without distortion; the lens " + lens +
+        " is not");
+  }
+  return camera.info;
+}
+
+}  // namespace
+}  // namespace detail
+
 SimulatedLens::SimulatedLens(const SimulatedCamera& camera)
-    : Lens(camera.info, camera.image, std::span(camera.errors).first(4)),
+    : Lens(detail::pinhole_info(camera), camera.image, std::span(camera.errors).first(4)),
       reported_(camera.info, camera.image) {}
 
 namespace detail {

@@ -158,7 +158,9 @@ TEST_F(Intervals, InWhichJointsWereNotReadAreRefused) {
   ASSERT_EQ(views.size(), 9U);
   for (std::size_t i = 0; i < 8; ++i) {
     EXPECT_EQ(views[i].view.has_value(), i != 2 && i != 3) << i;
-    if (!views[i].view) EXPECT_THAT(views[i].refusal, HasSubstr("was not read within 0.25 s"));
+    if (!views[i].view) {
+      EXPECT_THAT(views[i].refusal, HasSubstr("was not read within 0.25 s"));
+    }
   }
 }
 
