@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/chrono.h>
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -222,8 +223,16 @@ std::optional<Fit> fit_and_judge(const CalibrateOptions& options, Input& input) 
       {input.config, input.robot, input.urdf_text, input.urdf, fitted.samples, fitted.calibration},
       fitted.findings);
   if (fitted.findings.judgement.causes == 0 && !input.is_searched) {  // else it is named already
-    fitted.findings.helps = would_help(input.config, input.robot, fitted.samples,
-                                       fitted.calibration, fitted.findings.result);
+    const WouldHelp help = would_help(input.config, input.robot, fitted.samples, fitted.calibration,
+                                      fitted.findings.result);
+    fitted.findings.helps = help.sentences;
+    constexpr double kLensIsWrong = 0.7;  // of the error on held-out poses
+    if (!help.camera.empty() && help.left < kLensIsWrong) {
+      fitted.findings.judgement.add(
+          Grade::use_with_care,
+          fmt::format("the lens of '{}' is at fault: its intrinsics are not those given; {}",
+                      help.camera, fmt::join(help.sentences, ", ")));
+    }
   }
   fitted.findings.speeds = how_fast(fitted);
   fitted.findings.call = {options.command, inputs_of_plan(options, input),

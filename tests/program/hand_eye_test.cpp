@@ -8,6 +8,7 @@
 
 #include "kinecal/files/poses/pose_numbers.hpp"
 #include "kinecal/geometry/rpy.hpp"
+#include "support/data.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -95,6 +96,18 @@ TEST_F(HandEyeProgram, CalibratesFromTablesWithoutAUrdfOrAGuess) {
   EXPECT_LE((found.pose.rotation - truth).norm(), 3e-3);
   EXPECT_THAT(read("calibrated/camera_joint.sh"), HasSubstr("--frame-id flange"));
   EXPECT_EQ(kinecal("verify calibrated samples.yaml --camera camera=camera.yaml").code, 0);
+}
+
+/// The intrinsics that its authors gave are not those of this camera.
+TEST_F(HandEyeProgram, TheVerdictNamesALensThatIsAtFault) {
+  KINECAL_NEEDS_DATA("hand_eye_charuco")
+  const std::string data = (test::data_folder() / "hand_eye_charuco").string();
+  const test::Outcome done =
+      kinecal("calibrate --urdf " + data + "/stage.urdf --config " + data +
+              "/calibrate.yaml --samples " + data + "/samples.yaml --output out");
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, AllOf(HasSubstr("verdict: use with care"),
+                              HasSubstr("the lens of 'camera' is at fault")));
 }
 
 TEST_F(HandEyeProgram, RefusesWhatIsMissingAndWritesNothing) {

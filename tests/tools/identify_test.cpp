@@ -289,7 +289,7 @@ TEST(Identify, SamplesOfAnotherRobotAreNotExplained) {
 std::vector<std::string> helps_of(const Config& config, const Robot& robot,
                                   std::span<const Sample> samples) {
   const Calibration calibration = assembled(config, robot, samples);
-  return would_help(config, robot, samples, calibration, calibrate(calibration));
+  return would_help(config, robot, samples, calibration, calibrate(calibration)).sentences;
 }
 
 /// A robot with a wrong zero, and a configuration that holds it.

@@ -105,7 +105,8 @@ void try_lens(const Robot& robot, TriedLens& lens) {
   lens.squares.assign(lens.samples.size(), 0.0);
   const auto& poses = last.problem->poses_of_samples();
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    const auto fitted = last.problem->without_samples(), held_out = last.problem->without_samples();
+    std::unique_ptr<AnyProblem> fitted = last.problem->without_samples();
+    const std::unique_ptr<AnyProblem> held_out = last.problem->without_samples();
     std::vector<std::size_t> numbers;
     std::vector<std::vector<Pose<double>>> of_fitted, of_held_out;
     for (std::size_t s = 0; s < lens.samples.size(); ++s) {
@@ -116,9 +117,12 @@ void try_lens(const Robot& robot, TriedLens& lens) {
     }
     fitted->set_poses_of_samples(of_fitted);
     held_out->set_poses_of_samples(of_held_out);
-    Eigen::VectorXd values = solution;
+    Calibration of_fold{result.table, {}};
+    of_fold.steps.push_back(
+        {"fold", last.max_num_iterations, std::move(fitted), last.free, {}, {}});
     constexpr double kEnough = 1e-8;  // of the cost
-    (void)solve(*fitted, last.free, values, {.function_tolerance = kEnough});
+    const Eigen::VectorXd values =
+        calibrate(of_fold, {}, {.function_tolerance = kEnough}).table.values();
     add_squares(*held_out, values, numbers, lens.squares);
   }
 }

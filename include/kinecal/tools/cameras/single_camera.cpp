@@ -11,7 +11,7 @@
 
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
-#include "kinecal/solve/solve.hpp"
+#include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal {
 
@@ -79,7 +79,7 @@ std::optional<SingleCamera> single_camera(std::span<const TargetView> views, dou
   info.d = lens_start(Equidistant::kName, start->lens, start->most_degrees);
   const double f = start->lens.focal;
   info.k = {f, 0, start->center.x(), 0, f, start->center.y(), 0, 0, 1};
-  const std::unique_ptr<AnyProblem> problem = detail::fisheye_problem();
+  std::unique_ptr<AnyProblem> problem = detail::fisheye_problem();
   std::vector<std::size_t> of_sample;
   for (std::size_t v = 0; v < views.size(); ++v) {
     const auto pose = start->pose(views[v]);
@@ -90,16 +90,17 @@ std::optional<SingleCamera> single_camera(std::span<const TargetView> views, dou
   std::vector<int> columns(detail::Fisheye::kParameters.size());
   for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = static_cast<int>(i);
   const FreeSet free(columns, problem->table().size());
-  Eigen::VectorXd values = problem->table().values();
+  Calibration calibration{problem->table(), {}};
+  constexpr int kMostIterations = 100;
+  calibration.steps.push_back({"camera", kMostIterations, std::move(problem), free, {}, {}});
   constexpr double kEnough = 1e-6;  // of the cost: it is a start
-  (void)solve(*problem, free, values, {.function_tolerance = kEnough});
+  const CalibrationResult result = calibrate(calibration, {}, {.function_tolerance = kEnough});
   SingleCamera single;
   single.poses.resize(views.size());
-  const auto poses = problem->evaluator(free, 1)->own_poses(
-      {values.data(), static_cast<std::size_t>(values.size())});
+  const auto& poses = calibration.steps.front().problem->poses_of_samples();
   for (std::size_t i = 0; i < of_sample.size(); ++i) single.poses[of_sample[i]] = poses[i][0];
   detail::Fisheye::Settings own{};
-  std::copy_n(values.begin(), own.size(), own.begin());
+  for (std::size_t i = 0; i < own.size(); ++i) own[i] = result.table[static_cast<int>(i)].value;
   info = detail::Fisheye{ImageKind::raw}.calibrated(info, own);
   const double angle = detail::farthest_angle(info, views);
   constexpr double kNarrow = 50.0;  // degrees from the axis

@@ -26,12 +26,24 @@ namespace {
   return all;
 }
 
+/// The camera of pixels that owns all of these parameters; empty if there is none.
+[[nodiscard]] std::string camera_of(const AnyProblem& problem, const std::vector<int>& parameters) {
+  for (const MountedSensor& sensor : problem.sensors()) {
+    const std::vector<int>& own = sensor.parameters();
+    const bool has_all = std::all_of(parameters.begin(), parameters.end(), [&](int p) {
+      return std::find(own.begin(), own.end(), p) != own.end();
+    });
+    const bool is_eye = sensor.sensor().is_camera() && sensor.sensor().delivers(Quantity::pixel);
+    if (is_eye && has_all) return sensor.mount().parameter_prefix();
+  }
+  return {};
+}
+
 }  // namespace
 }  // namespace detail
 
-std::vector<std::string> would_help(const Config& config, const Robot& robot,
-                                    std::span<const Sample> samples, const Calibration& calibration,
-                                    const CalibrationResult& result) {
+WouldHelp would_help(const Config& config, const Robot& robot, std::span<const Sample> samples,
+                     const Calibration& calibration, const CalibrationResult& result) {
   constexpr std::size_t kFewest = 10, kMost = 2000;  // samples
   const bool fits = result.converged && config.steps.size() == 1 && calibration.steps.size() == 1;
   if (!fits || samples.size() < kFewest) return {};
@@ -59,16 +71,21 @@ std::vector<std::string> would_help(const Config& config, const Robot& robot,
            (problem.num_terms() > 1 ? " x noise" : "");
   };
   constexpr double kMuch = 0.9;
-  std::vector<std::string> sentences;
+  WouldHelp help;
   for (std::size_t i = 1;
        i < found.steps.size() && found.steps[i].held_out < kMuch * found.steps[i - 1].held_out;
        ++i) {
-    const std::string& name = candidates[static_cast<std::size_t>(found.chosen[i - 1])].name;
-    sentences.push_back(i == 1 ? "freeing " + name + " lowers the error on held-out poses from " +
-                                     error(0) + " to " + error(1)
-                               : "and with it " + name + " to " + error(i));
+    const IdentifyCandidate& candidate = candidates[static_cast<std::size_t>(found.chosen[i - 1])];
+    const std::string& name = candidate.name;
+    const std::string camera = detail::camera_of(problem, candidate.parameters);
+    help.camera = i == 1 || help.camera == camera ? camera : "";
+    help.left = found.steps[i].held_out / found.steps[0].held_out;
+    help.sentences.push_back(i == 1
+                                 ? "freeing " + name + " lowers the error on held-out poses from " +
+                                       error(0) + " to " + error(1)
+                                 : "and with it " + name + " to " + error(i));
   }
-  return sentences;
+  return help;
 }
 
 }  // namespace kinecal
