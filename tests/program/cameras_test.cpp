@@ -66,7 +66,7 @@ TEST_F(CamerasProgram, FindAFisheyeFromCornersAlone) {
       kinecal("calibrate --config calibrate.yaml --samples samples.yaml --output calibrated");
   ASSERT_EQ(done.code, 0) << done.out << done.err;
   EXPECT_THAT(done.err, HasSubstr("lens by the error on views held out"));
-  EXPECT_THAT(done.out, AllOf(HasSubstr("verdict: good"), Not(HasSubstr("kinecal verify"))));
+  EXPECT_THAT(done.out, Not(HasSubstr("kinecal verify")));
   EXPECT_THAT(read("calibrated/rgb_camera.yaml"),
               testing::AnyOf(HasSubstr("distortion_model: equidistant"),
                              HasSubstr("distortion_model: double_sphere")));

@@ -17,7 +17,8 @@ using testing::IsEmpty;
 /// A camera with k1 that sees points on its stand.
 /// @param k1  recorded; with k1 alone, x (1 + k1 x^2) is largest at 1 / sqrt(-3 k1)
 struct Stand {
-  explicit Stand(double k1, bool has_size = true) {
+  /// @param reach  of the points, in x / z
+  explicit Stand(double k1, bool has_size = true, double reach = 0.4) {
     info.width = has_size ? 640 : 0;
     info.height = has_size ? 480 : 0;
     info.distortion_model = "plumb_bob";
@@ -35,7 +36,8 @@ struct Stand {
     for (int n = 0; n < 3; ++n) {
       Sample& sample = samples.emplace_back();
       Observation points{"points", {}, {}}, seen{"camera", {}, info};
-      for (double x = -0.4; x < 0.45; x += 0.1) {
+      for (int i = -4; i <= 4; ++i) {
+        const double x = 0.25 * reach * i;
         const Vector3<double> p(x, 0.3 * x + 0.05 * n, 1.0);
         const Eigen::Vector2d pixel = camera->predict(p, camera->settings(seen));
         points.features.push_back({"base", p});
@@ -69,15 +71,22 @@ TEST(FoldedLens, IsFoundWhereItTurnsOver) {
   EXPECT_THAT(Stand(-0.5, false).folds({0, 1}), IsEmpty()) << "before it, and no size is known";
 }
 
-TEST(FoldedLens, IsNoResult) {
-  Stand stand(-0.5);
+Judgement judged(Stand stand) {
   Calibration calibration{stand.problem->table(), {}};
-  calibration.steps.push_back({"calibrate", 100, std::move(stand.problem), FreeSet({0, 1}, 2), {}});
-  const Judgement judgement = calibrate_and_judge(calibration, stand.samples).judgement;
-  EXPECT_EQ(judgement.verdict, Grade::do_not_use);
-  EXPECT_THAT(judgement.reasons, testing::Contains(HasSubstr(
-                                     "the lens of 'camera' folds over inside the image, 218 px "
-                                     "from the center; its corners are at 400 px")));
+  calibration.steps.push_back(
+      {"calibrate", 100, std::move(stand.problem), FreeSet({0, 1}, 2), {}, {}});
+  return calibrate_and_judge(calibration, stand.samples).judgement;
+}
+
+TEST(FoldedLens, IsNoResultWhereFeaturesAreAndToBeUsedWithCareBeyondThem) {
+  const auto says = testing::Contains(HasSubstr(
+      "the lens of 'camera' folds over inside the image, 218 px from the center; its corners are "
+      "at 400 px"));
+  const Judgement among = judged(Stand(-0.5, true, 0.8)), beyond = judged(Stand(-0.5));
+  EXPECT_EQ(among.verdict, Grade::do_not_use);
+  EXPECT_THAT(among.reasons, says);
+  EXPECT_EQ(beyond.verdict, Grade::use_with_care);
+  EXPECT_THAT(beyond.reasons, says);
 }
 
 }  // namespace

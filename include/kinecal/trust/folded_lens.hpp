@@ -22,6 +22,9 @@ struct FoldedLens {
   double radius = 0.0;    ///< from the principal point, pixels, where it folds first
   double corner = 0.0;    ///< of the farthest corner of the image, pixels
   double farthest = 0.0;  ///< of the farthest feature, pixels
+
+  /// True if features show that it folds; else no feature held the polynomial there.
+  [[nodiscard]] bool is_among_features() const { return radius < 1.05 * farthest; }
 };
 
 /// The cameras of raw images whose lens folds over inside the image, or before the farthest feature where the size of the

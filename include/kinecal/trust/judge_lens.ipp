@@ -39,7 +39,7 @@ namespace kinecal::detail {
          ", the noise falls to " + reading(1e2 * lens.noise_left, "1") + " %";
 }
 
-/// Lenses that fold over inside the image are no result.
+/// A lens that folds over where features are is no result; beyond them it is one for the places where features are.
 inline void judge_folds(const Assessment& step, Judgement& judgement) {
   for (const FoldedLens& fold : step.folded) {
     char radii[128];
@@ -47,10 +47,12 @@ inline void judge_folds(const Assessment& step, Judgement& judgement) {
                         "%.0f px from the center; its corners are at %.0f px, the farthest "
                         "feature at %.0f px",
                         fold.radius, fold.corner, fold.farthest);
-    judgement.add(Grade::do_not_use,
+    judgement.add(fold.is_among_features() ? Grade::do_not_use : Grade::use_with_care,
                   "the lens of '" + fold.sensor + "' folds over inside the image, " + radii +
-                      "; record features up to the corners, hold its last coefficients, or give "
-                      "it another model ('lens: auto' finds it)");
+                      (fold.is_among_features()
+                           ? "; give it another model ('lens: auto' finds it)"
+                           : "; do not use it beyond these, record features up to the corners, or "
+                             "hold its last coefficients"));
   }
 }
 

@@ -97,7 +97,7 @@ void try_lens(const Robot& robot, TriedLens& lens) {
   const std::vector<FoldedLens> folds =
       folded_lenses(*last.problem, last.free,
                     {solution.data(), static_cast<std::size_t>(solution.size())}, lens.samples);
-  if (!folds.empty()) {
+  if (!folds.empty() && folds.front().is_among_features()) {
     lens.fault = fmt::format("folds over {:.0f} px from the center", folds.front().radius);
     return;
   }

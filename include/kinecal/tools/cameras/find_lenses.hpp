@@ -4,7 +4,7 @@
 // Each lens is calibrated with all of its coefficients.  For each of five folds it is fitted to the other samples;
 // each sample that was held out gets the mean square of its residuals, its own pose fitted to it.  One lens beats
 // another one if its mean squares are smaller, on average over samples, by more than 1.645 standard errors.  A lens that
-// folds over inside the image, or does not fit at all, is out.
+// folds over where features are, or does not fit at all, is out.
 // Source: Vuong, Likelihood Ratio Tests for Model Selection and Non-Nested Hypotheses, 1989.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
