@@ -79,6 +79,29 @@ TEST(TargetPose, OfExactCornersIsExactThroughADistortedLens) {
   }
 }
 
+/// Rays of such lenses have any length, and may be more than 90 degrees from the axis.
+TEST(TargetPose, OfFisheyesIsExactToo) {
+  CameraInfo camera = test::camera_640();
+  camera.k = {180, 0, 320, 0, 180, 240, 0, 0, 1};
+  for (const auto& [lens, d] :
+       {std::pair<std::string, std::vector<double>>{"equidistant", {0.02, -0.004, 1e-3, 0}},
+        {"double_sphere", {-0.2, 0.6}}}) {
+    camera.distortion_model = lens;
+    camera.d = d;
+    for (const double angle : {0.0, 0.9, 1.7}) {
+      const Matrix3<double> aside = exp(Vector3<double>(0, angle, 0));
+      const Pose<double> facing = before_camera(0.4, 0.6, 0.3, 0.8);
+      const Pose<double> truth{aside * facing.rotation, aside * facing.translation};
+      std::vector<TargetCorner> corners = tag_of(0.16);
+      see(corners, camera, truth);
+      const TargetPose pose = target_pose(corners, camera);
+      ASSERT_TRUE(pose.camera_T_target) << lens << " at " << angle << ": " << pose.fault;
+      EXPECT_LT((pose.camera_T_target->translation - truth.translation).norm(), 1e-8);
+      EXPECT_LT((pose.camera_T_target->rotation - truth.rotation).norm(), 1e-7);
+    }
+  }
+}
+
 TEST(TargetPose, OfTagsInTwoPlanesUsesAllCorners) {
   std::vector<TargetCorner> corners = tag_of(0.05, {0, 0, 0.02});
   for (TargetCorner& corner : tag_of(0.05, {0.1, 0, -0.03})) corners.push_back(corner);

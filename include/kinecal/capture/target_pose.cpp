@@ -3,6 +3,7 @@
 #include "kinecal/capture/target_pose.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -17,10 +18,10 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// Corners of a target, and the rays at which a camera sees them.
+/// Corners of a target, and the rays at which a camera sees them that is turned to their middle.
 struct SeenTarget {
   std::vector<Vector3<double>> points;  ///< (3) metres, in the target
-  std::vector<Eigen::Vector2d> rays;    ///< (2) x / z, y / z
+  std::vector<Eigen::Vector2d> rays;    ///< (2) x / z, y / z in the turned camera
   double focal = 1.0;                   ///< pixels
 
   /// Sum of squares of a pose, pixels^2; infinite if a corner is behind the camera.
@@ -144,15 +145,22 @@ struct PoseFit {
 
 TargetPose target_pose(const std::vector<TargetCorner>& corners, const CameraInfo& camera) {
   detail::SeenTarget seen;
+  std::vector<Vector3<double>> directions;
   try {
     const Lens lens(camera);
     seen.focal = lens.focal_length();
     for (const TargetCorner& corner : corners) {
       seen.points.push_back(corner.target);
-      seen.rays.emplace_back(lens.ray(corner.pixel.x(), corner.pixel.y()).head<2>());
+      directions.push_back(lens.ray(corner.pixel.x(), corner.pixel.y()));
     }
   } catch (const std::exception& error) {
     return {std::nullopt, 0.0, std::string("the pose needs the camera's lens: ") + error.what()};
+  }
+  const Matrix3<double> turn = turn_to_axis(directions);
+  for (const Vector3<double>& direction : directions) {
+    const Vector3<double> turned = turn * direction;
+    if (!(turned.z() > 0.0)) return {std::nullopt, 0.0, "its corners do not show a pose"};
+    seen.rays.emplace_back(turned.hnormalized());
   }
   const auto start = detail::first_pose(seen);
   if (!start) return {std::nullopt, 0.0, "its corners are too few for a pose"};
@@ -173,7 +181,8 @@ TargetPose target_pose(const std::vector<TargetCorner>& corners, const CameraInf
                 " degrees apart fit alike; tilt it, let it be larger in the image, or use more "
                 "corners"};
   }
-  return {best.pose, rms, ""};
+  const Pose<double> camera_T_turned{turn.transpose(), Vector3<double>::Zero()};
+  return {camera_T_turned * best.pose, rms, ""};
 }
 
 }  // namespace kinecal

@@ -2,6 +2,7 @@
 //
 //   minimize  sum |f (x / z, y / z) - f ray(pixel)|^2     (x, y, z) = camera_T_target p
 //
+// in a camera that is turned to the middle of the corners, so that a lens may see them anywhere.
 // A small or distant flat target looks nearly the same from two directions, one the reflection of the
 // other across the line of sight.  Both are fitted.  If they fit alike, there is no pose.
 // Source: Schweighofer, Pinz, Robust Pose Estimation from a Planar Target, 2006 (two minima).
