@@ -12,10 +12,12 @@
 #include "kinecal/config/own_frames.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/sensors/lens.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/study/seeded_random.hpp"
 #include "kinecal/tools/cameras/find_lenses.hpp"
+#include "kinecal/tools/cameras/initial_cameras.hpp"
 #include "kinecal/tools/cameras/lens_start.hpp"
 #include "kinecal/tools/cameras/start_cameras.hpp"
 #include "support/data.hpp"
@@ -152,9 +154,15 @@ TEST(CamerasAlone, TheLensIsFoundByEvidence) {
               testing::Contains(HasSubstr("taken as rational_polynomial")));
 }
 
-/// Two cameras on a body see a board that a person holds; the truth is found from pixels alone.
-TEST(CamerasAlone, ARigFromPixelsAlone) {
+/// Two cameras on a body, and what they see of a board that a person holds, to rounding.
+struct Rig {
   CameraInfo left, right;
+  std::vector<Sample> samples;  ///< nothing is known of the cameras but the size of their images
+};
+
+Rig two_fisheyes(double noise = 0.0) {
+  Rig rig;
+  CameraInfo &left = rig.left, &right = rig.right;
   left.width = right.width = 1280;
   left.height = right.height = 960;
   left.distortion_model = right.distortion_model = "equidistant";
@@ -165,8 +173,7 @@ TEST(CamerasAlone, ARigFromPixelsAlone) {
   const Pose<double> left_T_right{exp(Vector3<double>(0.02, 0.4, -0.03)), {0.12, -0.01, 0.02}};
   const auto camera = any_built_in(lens_camera("equidistant", ImageKind::raw));
   SeededRandom random(3);
-  std::vector<Sample> samples;
-  while (samples.size() < 30) {
+  while (rig.samples.size() < 30) {
     const Pose<double> left_T_board{
         exp(Vector3<double>(random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6),
                             random.uniform(-3.0, 3.0))),
@@ -183,7 +190,8 @@ TEST(CamerasAlone, ARigFromPixelsAlone) {
       for (int i = 0; i < 48; ++i) {
         const Vector3<double> p = pose * Vector3<double>(0.06 * (i % 8), 0.06 * (i / 8), 0.0);
         const Eigen::Vector2d pixel = camera->predict(p, settings);
-        eye.features.push_back({name, {pixel.x(), pixel.y(), 0.0}});
+        const double u = noise * random.normal(), v = noise * random.normal();
+        eye.features.push_back({name, {pixel.x() + u, pixel.y() + v, 0.0}});
       }
       sample.observations.push_back(eye);
     };
@@ -192,9 +200,15 @@ TEST(CamerasAlone, ARigFromPixelsAlone) {
     }
     sample.observations.push_back(board);
     see("left", left, left_T_board);
-    if (samples.size() % 3 != 0) see("right", right, left_T_right.inverse() * left_T_board);
-    samples.push_back(sample);
+    if (rig.samples.size() % 3 != 0) see("right", right, left_T_right.inverse() * left_T_board);
+    rig.samples.push_back(sample);
   }
+  return rig;
+}
+
+/// The truth is found from pixels alone.
+TEST(CamerasAlone, ARigFromPixelsAlone) {
+  const auto [left, right, samples] = two_fisheyes();
   Cameras rig(config_of({"left", "right"}, "equidistant", "k1 k2 k3 k4"), samples);
   ASSERT_THAT(rig.diagnostics.errors, IsEmpty());
   ASSERT_TRUE(rig.result.converged);
@@ -205,6 +219,26 @@ TEST(CamerasAlone, ARigFromPixelsAlone) {
   }
   EXPECT_NEAR(rig.value("right_joint_x"), 0.12, 1e-6);
   EXPECT_NEAR(rig.value("right_joint_y"), -0.01, 1e-6);
+}
+
+/// As `init --cameras left,right` writes it: no lens is given, and no lens waits for that of the other camera.
+TEST(CamerasAlone, TheLensesOfARigAreFoundByEvidence) {
+  const auto [left, right, samples] = two_fisheyes(0.2);
+  Cameras rig(initial_cameras({"left", "right"}), samples);
+  ASSERT_THAT(rig.diagnostics.errors, IsEmpty());
+  ASSERT_TRUE(rig.result.converged);
+  // Another lens may fit as well with fewer coefficients: what counts is where it images points.
+  for (const auto& [name, truth] : {std::pair("left", left), std::pair("right", right)}) {
+    const Lens found(rig.info(name), ImageKind::raw), was(truth, ImageKind::raw);
+    for (const double angle : {0.1, 0.5, 0.9}) {
+      for (const double about : {0.0, 1.6, 3.1, 4.7}) {
+        const Vector3<double> p(std::sin(angle) * std::cos(about),
+                                std::sin(angle) * std::sin(about), std::cos(angle));
+        EXPECT_LE((found.project(p) - was.project(p)).norm(), 0.5) << name << " at " << angle;
+      }
+    }
+  }
+  EXPECT_NEAR(rig.value("right_joint_x"), 0.12, 5e-4);
 }
 
 TEST(CamerasAlone, WhatCannotBeIsSaid) {

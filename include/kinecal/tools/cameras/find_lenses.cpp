@@ -8,17 +8,16 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/choose_images.hpp"
 #include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
-#include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/tools/cameras/start_cameras.hpp"
+#include "kinecal/tools/cameras/trial_config.ipp"
 #include "kinecal/tools/cameras/tried_lens.ipp"
 #include "kinecal/trust/folded_lens.hpp"
 
@@ -26,38 +25,6 @@ namespace kinecal {
 
 namespace detail {
 namespace {
-
-/// The configuration with a lens whose intrinsics are free.
-[[nodiscard]] Config with_lens(Config config, const ModelConfig& camera, const std::string& lens) {
-  const auto owned = [&](const std::string& lens_name) {
-    ModelConfig model = camera;
-    model.lens = lens_name;
-    std::set<std::string> names;
-    const std::shared_ptr<const AnySensor> sensor = sensor_of(model);
-    for (const ParameterInfo& info : sensor->parameters()) {
-      names.insert(parameter_name(camera.param_name, info.name));
-    }
-    return names;
-  };
-  std::set<std::string> others;
-  for (const std::string_view name : lens_names()) others.merge(owned(std::string(name)));
-  const std::set<std::string> own = owned(lens);
-  for (StepConfig& step : config.steps) {
-    constexpr int kEnough = 100;  // iterations: a lens that does not fit is not worth more
-    step.max_num_iterations = std::min(step.max_num_iterations, kEnough);
-    bool has_camera = false;
-    for (ModelConfig& model : step.models) {
-      if (model.name != camera.name) continue;
-      has_camera = true;
-      model.lens = lens;
-      model.image = ImageKind::raw;
-    }
-    if (!has_camera) continue;
-    std::erase_if(step.free_params, [&](const auto& free) { return others.contains(free.name); });
-    for (const std::string& name : own) step.free_params.push_back({name, camera.place});
-  }
-  return config;
-}
 
 /// Mean square of each sample at some values; zero without residuals.
 void add_squares(const AnyProblem& problem, const Eigen::VectorXd& values,
@@ -82,6 +49,10 @@ void try_lens(const Robot& robot, TriedLens& lens) {
   start_cameras(lens.config, robot, lens.samples, diagnostics);
   choose_lenses(lens.config, lens.samples, diagnostics);
   choose_images(lens.config, robot, lens.samples, diagnostics);
+  constexpr int kEnough = 100;  // iterations: a lens that does not fit is not worth more
+  for (StepConfig& step : lens.config.steps) {
+    step.max_num_iterations = std::min(step.max_num_iterations, kEnough);
+  }
   const Calibration calibration = assemble(lens.config, robot, lens.samples, diagnostics);
   if (!diagnostics.errors.empty()) {
     lens.fault = diagnostics.errors.front();
@@ -120,9 +91,9 @@ void try_lens(const Robot& robot, TriedLens& lens) {
     Calibration of_fold{result.table, {}};
     of_fold.steps.push_back(
         {"fold", last.max_num_iterations, std::move(fitted), last.free, {}, {}});
-    constexpr double kEnough = 1e-8;  // of the cost
+    constexpr double kSettled = 1e-8;  // of the cost
     const Eigen::VectorXd values =
-        calibrate(of_fold, {}, {.function_tolerance = kEnough}).table.values();
+        calibrate(of_fold, {}, {.function_tolerance = kSettled}).table.values();
     add_squares(*held_out, values, numbers, lens.squares);
   }
 }
@@ -146,10 +117,11 @@ void find_lenses(Config& config, const Robot& robot, std::vector<Sample>& sample
   for (const ModelConfig& camera : detail::models_of(config)) {
     if (camera.lens != kAnyLens) continue;
     std::vector<detail::TriedLens> tried;
+    const Config alone = detail::without_others(config, robot, camera);
     for (const std::string_view lens : {DoubleSphere::kName, Equidistant::kName, PlumbBob::kName,
                                         RationalPolynomial::kName, ThinPrism::kName}) {
       const std::string name(lens);
-      tried.push_back({name, detail::with_lens(config, camera, name), samples, {}, {}});
+      tried.push_back({name, detail::with_lens(alone, camera, name), samples, {}, {}});
       detail::try_lens(robot, tried.back());
     }
     const auto fits = [](const detail::TriedLens& lens) { return lens.fault.empty(); };
@@ -175,11 +147,8 @@ void find_lenses(Config& config, const Robot& robot, std::vector<Sample>& sample
         camera.place,
         fmt::format("sensor '{}': lens by the error on views held out: {}: taken as {}",
                     camera.name, detail::errors_text(tried), best->name));
-    for (std::size_t i = 0; i < config.steps.size(); ++i) {
-      best->config.steps[i].max_num_iterations = config.steps[i].max_num_iterations;
-    }
-    config = best->config;
-    samples = best->samples;
+    config = detail::with_lens(config, camera, best->name);
+    detail::take_camera(camera.name, best->samples, samples);
   }
 }
 
