@@ -80,8 +80,11 @@ struct Cameras {
     const Eigen::VectorXd values = result.table.values();
     for (const MountedSensor& sensor : calibration.steps.back().problem->sensors()) {
       if (sensor.mount().name != camera) continue;
+      const auto seen = std::find_if(samples.begin(), samples.end(), [&](const Sample& sample) {
+        return sample.observation(camera) != nullptr;
+      });
       return sensor.sensor().calibrated(
-          *samples.front().observation(camera)->camera,
+          *seen->observation(camera)->camera,
           sensor.own_values({values.data(), static_cast<std::size_t>(values.size())}));
     }
     return {};
