@@ -7,8 +7,7 @@
 //
 // Coefficients, in this order: xi, alpha.  xi = alpha = 0 is a pinhole.  It sees points with Z > -w2 d1, w2 =
 // (w1 + xi) / sqrt(2 w1 xi + xi^2 + 1), w1 = alpha / (1 - alpha) or its inverse, the smaller one; where alpha > 1/2,
-// its image ends at the radius 1 / sqrt(2 alpha - 1).  It is inverted in closed form, so it is the lens of many
-// visual odometries.  (The extended unified camera has two coefficients, too, and fits a little worse.)
+// its image ends at the radius 1 / sqrt(2 alpha - 1).  It is inverted in closed form.
 // Source: Usenko, Demmel and Cremers, The Double Sphere Camera Model, 2018.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -26,8 +26,8 @@ struct Equidistant {
                                                ParameterInfo{"k3"},
                                                ParameterInfo{"k4"}};  ///< in the order of D
 
-  /// Where the image of a point is.
-  /// @param p  (3) metres, in the optical frame; not a number beyond the fold and just behind the camera
+  /// Where the image of a point is; not a number beyond the fold and just behind the camera.
+  /// @param p  (3) metres, in the optical frame
   /// @param d  (4) coefficients
   /// @returns  (2) focal lengths from the principal point
   template <class S, class C>
