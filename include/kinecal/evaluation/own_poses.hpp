@@ -85,6 +85,8 @@ class OwnPosesEvaluator final : public AnyEvaluator {
   struct Rows {
     int term = 0, sample = 0;
     TermResiduals residuals;
+    double cost = 0.0;        ///< losses included
+    Eigen::VectorXd weights;  ///< squares of each row's weight, losses included
   };
 
   /// Moves a sample in the batches to its current poses.

@@ -112,18 +112,16 @@ std::optional<UndefinedResidual> OwnPosesEvaluator<S>::collect(ParameterValues v
   const auto undefined = by_all_->evaluate(
       values, true,
       [&](int t, int sample, const TermResiduals& rows) {
-        rows_.push_back({t, sample, rows});
+        Rows& of = rows_.emplace_back(Rows{t, sample, rows, 0.0, {}});
+        of.weights = detail::squared_weights(problem_.term(t), rows, losses, of.cost);
       },
       at);
   const Eigen::Index free = free_.size(), own = own_.size();
   std::vector<Eigen::MatrixXd> by_own(now_.size(), Eigen::MatrixXd::Zero(own, own)),
       by_both(now_.size(), Eigen::MatrixXd::Zero(own, free));
   for (const Rows& of : rows_) {
-    double cost = 0.0;
     const auto poses = of.residuals.jacobian.rightCols(own);
-    const Eigen::MatrixXd weighted =
-        detail::squared_weights(problem_.term(of.term), of.residuals, losses, cost).asDiagonal() *
-        poses;
+    const Eigen::MatrixXd weighted = of.weights.asDiagonal() * poses;
     const auto s = static_cast<std::size_t>(of.sample);
     by_own[s].noalias() += weighted.transpose() * poses;
     by_both[s].noalias() += weighted.transpose() * of.residuals.jacobian.leftCols(free);
@@ -136,13 +134,8 @@ std::optional<UndefinedResidual> OwnPosesEvaluator<S>::collect(ParameterValues v
     const auto s = static_cast<std::size_t>(of.sample);
     const Eigen::MatrixXd jacobian = std::move(of.residuals.jacobian);
     const auto poses = jacobian.rightCols(own);
-    double cost = 0.0;
-    of.residuals.used = (poses * by_own[s])
-                            .cwiseProduct(poses)
-                            .rowwise()
-                            .sum()
-                            .cwiseProduct(detail::squared_weights(problem_.term(of.term),
-                                                                  of.residuals, losses, cost));
+    const Eigen::VectorXd lengths = (poses * by_own[s]).cwiseProduct(poses).rowwise().sum();
+    of.residuals.used = lengths.cwiseProduct(of.weights);
     of.residuals.jacobian = jacobian.leftCols(free) - poses * by_both[s];
   }
   return undefined;
@@ -165,14 +158,20 @@ template <class S>
 NormalEquations OwnPosesEvaluator<S>::normal_equations(ParameterValues values, bool derivatives,
                                                        Losses losses) {
   NormalEquations total(derivatives ? free_.size() : 0);
-  const auto undefined = collect(values, losses, Linearization::measured);
-  for (const Rows& of : rows_) {
-    const Eigen::VectorXd w2 =
-        detail::squared_weights(problem_.term(of.term), of.residuals, losses, total.cost);
-    if (!derivatives) continue;
-    const Eigen::MatrixXd weighted = w2.asDiagonal() * of.residuals.jacobian;
-    total.gradient.noalias() += weighted.transpose() * of.residuals.residual;
-    total.hessian.noalias() += weighted.transpose() * of.residuals.jacobian;
+  std::optional<UndefinedResidual> undefined;
+  if (!derivatives) {
+    fit(values, losses);
+    undefined = by_own_->evaluate(values, false, [&](int t, int, const TermResiduals& rows) {
+      (void)detail::squared_weights(problem_.term(t), rows, losses, total.cost);
+    });
+  } else {
+    undefined = collect(values, losses, Linearization::measured);
+    for (const Rows& of : rows_) {
+      const Eigen::MatrixXd weighted = of.weights.asDiagonal() * of.residuals.jacobian;
+      total.cost += of.cost;
+      total.gradient.noalias() += weighted.transpose() * of.residuals.residual;
+      total.hessian.noalias() += weighted.transpose() * of.residuals.jacobian;
+    }
   }
   if (undefined) total.cost = std::numeric_limits<double>::quiet_NaN();
   if (total.cost <= best_cost_) {
