@@ -39,19 +39,10 @@ struct RecordedLenses {
   return recorded;
 }
 
-/// Place of a lens among those of which each contains the one before it; -1 for others.
-[[nodiscard]] int place_in_family(const std::string& lens) {
-  constexpr std::array kFamily = {PlumbBob::kName, RationalPolynomial::kName, ThinPrism::kName};
-  const auto found = std::find(kFamily.begin(), kFamily.end(), lens);
-  return found == kFamily.end() ? -1 : static_cast<int>(found - kFamily.begin());
-}
-
 /// True if all of a camera's lenses are contained in a lens.
 [[nodiscard]] bool contains_all(const std::string& lens, const RecordedLenses& recorded) {
-  return std::all_of(recorded.lenses.begin(), recorded.lenses.end(), [&](const auto& of) {
-    const int theirs = place_in_family(of.first), own = place_in_family(lens);
-    return of.first == lens || (theirs >= 0 && theirs <= own);
-  });
+  return std::all_of(recorded.lenses.begin(), recorded.lenses.end(),
+                     [&](const auto& of) { return contains_lens(lens, of.first); });
 }
 
 /// Replaces the lens of the samples by one without distortion.
@@ -62,7 +53,7 @@ void replace_lens(std::vector<Sample>& samples, const std::string& camera,
   for (Sample& sample : samples) {
     for (Observation& seen : sample.observations) {
       if (seen.sensor != camera || !seen.camera) continue;
-      seen.camera->distortion_model = lens == ThinPrism::kName ? RationalPolynomial::kName : lens;
+      seen.camera->distortion_model = distortion_model_of(lens);
       seen.camera->d.assign(coefficients, 0.0);
     }
   }
@@ -81,11 +72,10 @@ void set_lens(Config& config, const std::string& camera, const std::string& lens
 void take_recorded_lens(Config& config, const ModelConfig& camera, const RecordedLenses& recorded,
                         Diagnostics& diagnostics) {
   if (recorded.lenses.empty() || !recorded.is_known) return;
-  const auto largest = std::max_element(
-      recorded.lenses.begin(), recorded.lenses.end(), [](const auto& a, const auto& b) {
-        return place_in_family(a.first) < place_in_family(b.first);
-      });
-  if (!contains_all(largest->first, recorded)) {
+  const auto largest =
+      std::find_if(recorded.lenses.begin(), recorded.lenses.end(),
+                   [&](const auto& of) { return contains_all(of.first, recorded); });
+  if (largest == recorded.lenses.end()) {
     const auto &a = recorded.lenses[0], &b = recorded.lenses[1];
     diagnostics.error(
         camera.place,

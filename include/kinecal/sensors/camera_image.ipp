@@ -16,7 +16,7 @@ KINECAL_INLINE bool is_raw(const CameraInfo& info, ImageKind image) {
   const bool has_k = info.k[0] != 0.0 || info.k[4] != 0.0;
   const bool has_p = info.p[0] != 0.0 || info.p[5] != 0.0;
   const std::string_view lens = lens_named(info.distortion_model);
-  const bool bends = lens == "equidistant" || lens == "double_sphere" ||
+  const bool bends = (!lens.empty() && !bends_pinhole(lens)) ||
                      std::any_of(info.d.begin(), info.d.end(), [](double d) { return d != 0.0; });
   return has_k && (bends || !has_p);
 }

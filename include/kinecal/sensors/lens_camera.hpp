@@ -64,7 +64,7 @@ struct LensCamera {
     Settings s{};
     std::copy_n(intrinsics.begin(), 4, s.begin());
     if (raw) {
-      const std::vector<double> d = coefficients_of(info, kLens, kCoefficients);
+      const std::vector<double> d = coefficients_of(info, kLens);
       std::copy_n(d.begin(), kCoefficients, s.begin() + 4);
     }
     if (image != ImageKind::automatic && s[0] == 0.0 && s[1] == 0.0) {

@@ -22,16 +22,24 @@ namespace kinecal {
 /// The lens that a name in a file means: "equidistant" of "fisheye"; empty if nobody knows it.
 [[nodiscard]] std::string_view lens_named(std::string_view name);
 
+/// True for the lenses that bend the image of a pinhole: plumb_bob, rational_polynomial, thin_prism, each of which
+/// contains the one before it.
+[[nodiscard]] bool bends_pinhole(std::string_view lens);
+
+/// True if a lens can have all coefficients of another one.
+[[nodiscard]] bool contains_lens(std::string_view lens, std::string_view other);
+
+/// The distortion_model of a lens in camera_info: its name, but rational_polynomial of thin_prism.
+[[nodiscard]] std::string_view distortion_model_of(std::string_view lens);
+
 /// The names of all lenses.
 [[nodiscard]] std::span<const std::string_view> lens_names();
 
 /// The coefficients of a camera_info for a lens that can take them: its own, or those of a lens that it
 /// contains (rational_polynomial contains plumb_bob).
-/// @param count  of the lens
 /// @throws SettingsError  if there are too many or too few, one is not a number, or they are of another lens and not
 ///                        all zero
-[[nodiscard]] std::vector<double> coefficients_of(const CameraInfo& info, std::string_view lens,
-                                                  std::size_t count);
+[[nodiscard]] std::vector<double> coefficients_of(const CameraInfo& info, std::string_view lens);
 
 /// Adds changes to the coefficients of a camera_info, if one is not zero: its distortion model becomes that of
 /// the lens, unless it can hold them.

@@ -8,7 +8,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "kinecal/sensors/double_sphere.hpp"
+#include "kinecal/sensors/equidistant.hpp"
 #include "kinecal/sensors/lens_names.hpp"
+#include "kinecal/sensors/plumb_bob.hpp"
+#include "kinecal/sensors/rational_polynomial.hpp"
 #include "kinecal/sensors/sensor.hpp"
 
 namespace kinecal {
@@ -22,14 +26,16 @@ struct NamedLens {
   bool bends_pinhole = false;                 ///< contains all such lenses with fewer coefficients
   std::array<std::string_view, 5> also = {};  ///< other names in files
 };
+template <class L>
+[[nodiscard]] constexpr NamedLens named(std::array<std::string_view, 5> also,
+                                        bool bends_pinhole = false) {
+  return {L::kName, L::kCoefficients.size(), bends_pinhole, also};
+}
 inline constexpr std::array kLenses = {
-    NamedLens{"plumb_bob", 5, true, {"radtan", "brown_conrady"}},
-    NamedLens{"rational_polynomial", 8, true, {"rational"}}, NamedLens{"thin_prism", 12, true, {}},
-    NamedLens{"equidistant",
-              4,
-              false,
-              {"fisheye", "equi", "kannala_brandt", "kannala_brandt4", "KANNALA_BRANDT4"}},
-    NamedLens{"double_sphere", 2, false, {"ds"}}};
+    named<PlumbBob>({"radtan", "brown_conrady"}, true),
+    named<RationalPolynomial>({"rational"}, true), named<ThinPrism>({}, true),
+    named<Equidistant>({"fisheye", "equi", "kannala_brandt", "kannala_brandt4", "KANNALA_BRANDT4"}),
+    named<DoubleSphere>({"ds"})};
 
 [[nodiscard]] inline const NamedLens* find_lens(std::string_view name) {
   for (const NamedLens& lens : kLenses) {
@@ -53,6 +59,22 @@ inline constexpr std::array kLenses = {
 KINECAL_INLINE std::string_view lens_named(std::string_view name) {
   const detail::NamedLens* lens = detail::find_lens(name);
   return lens == nullptr ? std::string_view{} : lens->name;
+}
+
+KINECAL_INLINE bool bends_pinhole(std::string_view lens) {
+  const detail::NamedLens* named = detail::find_lens(lens);
+  return named != nullptr && named->bends_pinhole;
+}
+
+KINECAL_INLINE bool contains_lens(std::string_view lens, std::string_view other) {
+  const detail::NamedLens *own = detail::find_lens(lens), *theirs = detail::find_lens(other);
+  if (own == nullptr || theirs == nullptr) return false;
+  return own == theirs ||
+         (own->bends_pinhole && theirs->bends_pinhole && theirs->coefficients <= own->coefficients);
+}
+
+KINECAL_INLINE std::string_view distortion_model_of(std::string_view lens) {
+  return lens == ThinPrism::kName ? RationalPolynomial::kName : lens;
 }
 
 KINECAL_INLINE std::span<const std::string_view> lens_names() {
@@ -82,8 +104,7 @@ KINECAL_INLINE std::string lens_of(const CameraInfo& info) {
   return lens == "rational_polynomial" && used > 8 ? "thin_prism" : std::string(lens);
 }
 
-KINECAL_INLINE std::vector<double> coefficients_of(const CameraInfo& info, std::string_view lens,
-                                                   std::size_t count) {
+KINECAL_INLINE std::vector<double> coefficients_of(const CameraInfo& info, std::string_view lens) {
   const detail::NamedLens &own = *detail::find_lens(lens),
                           &theirs = *detail::find_lens(lens_of(info));
   const std::size_t used = detail::used_coefficients(info.d), size = info.d.size();
@@ -108,8 +129,8 @@ KINECAL_INLINE std::vector<double> coefficients_of(const CameraInfo& info, std::
                         (used > 0 ? "the " + text(used) + " of " : "the lens ") +
                         std::string(theirs.name));
   }
-  std::vector<double> d(count, 0.0);
-  std::copy_n(info.d.begin(), std::min(used, count), d.begin());
+  std::vector<double> d(own.coefficients, 0.0);
+  std::copy_n(info.d.begin(), std::min(used, d.size()), d.begin());
   for (const double coefficient : d) {
     if (!std::isfinite(coefficient)) {
       throw SettingsError("a distortion coefficient of camera_info is not a number");
@@ -130,14 +151,13 @@ KINECAL_INLINE void set_coefficients(CameraInfo& info, std::string_view lens,
                                 std::string(coefficients[which].name) +
                                 "' must be held, or the image is raw ('image: raw')");
   }
-  std::vector<double> d = coefficients_of(info, lens, changes.size());
+  std::vector<double> d = coefficients_of(info, lens);
   for (std::size_t i = 0; i < d.size(); ++i) d[i] += changes[i];
   // the model that its driver writes and as many coefficients, if they hold the lens
-  const std::string_view model = lens == "thin_prism" ? "rational_polynomial" : lens;
+  const std::string_view model = distortion_model_of(lens);
   const detail::NamedLens* recorded = detail::find_lens(info.distortion_model);
   const std::size_t used = detail::used_coefficients(d), size = info.d.size();
-  const bool may_stay =
-      recorded != nullptr && recorded->bends_pinhole && detail::find_lens(lens)->bends_pinhole;
+  const bool may_stay = recorded != nullptr && recorded->bends_pinhole && bends_pinhole(lens);
   if (may_stay && used <= recorded->coefficients) {
     d.resize(used <= size ? size : recorded->coefficients, 0.0);
   } else {

@@ -31,7 +31,7 @@ namespace {
 /// @throws SettingsError  of another lens
 [[nodiscard]] const CameraInfo& pinhole_info(const SimulatedCamera& camera) {
   const std::string lens = is_raw(camera.info, camera.image) ? lens_of(camera.info) : "plumb_bob";
-  if (lens == "equidistant" || lens == "double_sphere") {
+  if (!bends_pinhole(lens)) {
     throw SettingsError(
         "cameras are simulated with pinholes, with or without distortion; the lens " + lens +
         " is not");
