@@ -83,8 +83,8 @@ std::vector<FoldedLens> folded_lenses(const AnyProblem& problem, const FreeSet& 
         info = &*seen->camera;
         camera = detail::SolvedCamera{&mounted, mounted.own_values(values),
                                       mounted.sensor().settings(*seen)};
-        const CameraInfo now = mounted.sensor().calibrated(*info, camera->own);
-        camera->center = {now.k[2], now.k[5]};
+        const std::vector<double>&s = camera->settings, &v = camera->own;  // fx fy cx cy, ...
+        camera->center = {s[2] * (1.0 + v[2]), s[3] * (1.0 + v[3])};
       }
       for (const Feature& feature : seen->features) {
         if (!feature.point.allFinite()) continue;

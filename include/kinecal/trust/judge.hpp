@@ -26,6 +26,7 @@
 //                                                       standard deviations
 //                                                       residuals of a camera that grow with the
 //                                                       distance from the center: its lens
+//   a lens that folds over among the features          beyond them, inside the image
 //                                                       doubts about the input
 //
 // Freedom is the number of residuals minus the number of determined parameters.  Undetermined
