@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/chrono.h>
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -226,13 +225,7 @@ std::optional<Fit> fit_and_judge(const CalibrateOptions& options, Input& input) 
     const WouldHelp help = would_help(input.config, input.robot, fitted.samples, fitted.calibration,
                                       fitted.findings.result);
     fitted.findings.helps = help.sentences;
-    constexpr double kLensIsWrong = 0.7;  // of the error on held-out poses
-    if (!help.camera.empty() && help.left < kLensIsWrong) {
-      fitted.findings.judgement.add(
-          Grade::use_with_care,
-          fmt::format("the lens of '{}' is at fault: its intrinsics are not those given; {}",
-                      help.camera, fmt::join(help.sentences, ", ")));
-    }
+    judge_help(help, fitted.findings.judgement);
   }
   fitted.findings.speeds = how_fast(fitted);
   fitted.findings.call = {options.command, inputs_of_plan(options, input),

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/tools/identify/would_help.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "kinecal/config/assemble.hpp"
@@ -27,7 +30,8 @@ namespace {
 }
 
 /// The camera of pixels that owns all of these parameters; empty if there is none.
-[[nodiscard]] std::string camera_of(const AnyProblem& problem, const std::vector<int>& parameters) {
+[[nodiscard]] std::string owning_camera(const AnyProblem& problem,
+                                        const std::vector<int>& parameters) {
   for (const MountedSensor& sensor : problem.sensors()) {
     const std::vector<int>& own = sensor.parameters();
     const bool has_all = std::all_of(parameters.begin(), parameters.end(), [&](int p) {
@@ -77,7 +81,7 @@ WouldHelp would_help(const Config& config, const Robot& robot, std::span<const S
        ++i) {
     const IdentifyCandidate& candidate = candidates[static_cast<std::size_t>(found.chosen[i - 1])];
     const std::string& name = candidate.name;
-    const std::string camera = detail::camera_of(problem, candidate.parameters);
+    const std::string camera = detail::owning_camera(problem, candidate.parameters);
     help.camera = i == 1 || help.camera == camera ? camera : "";
     help.left = found.steps[i].held_out / found.steps[0].held_out;
     help.sentences.push_back(i == 1
@@ -86,6 +90,14 @@ WouldHelp would_help(const Config& config, const Robot& robot, std::span<const S
                                  : "and with it " + name + " to " + error(i));
   }
   return help;
+}
+
+void judge_help(const WouldHelp& help, Judgement& judgement) {
+  constexpr double kLensIsWrong = 0.7;  // of the error on held-out poses
+  if (help.camera.empty() || help.left >= kLensIsWrong) return;
+  judgement.add(Grade::use_with_care,
+                fmt::format("the lens of '{}' is at fault: its intrinsics are not those given; {}",
+                            help.camera, fmt::join(help.sentences, ", ")));
 }
 
 }  // namespace kinecal

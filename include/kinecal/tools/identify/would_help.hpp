@@ -10,6 +10,7 @@
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/solve/calibrate.hpp"
+#include "kinecal/trust/judge.hpp"
 
 namespace kinecal {
 
@@ -31,5 +32,9 @@ struct WouldHelp {
 [[nodiscard]] WouldHelp would_help(const Config& config, const Robot& robot,
                                    std::span<const Sample> samples, const Calibration& calibration,
                                    const CalibrationResult& result);
+
+/// Adds to a verdict that the lens of a camera is at fault, if its intrinsics alone lower the error on held-out poses by
+/// 30 percent or more.
+void judge_help(const WouldHelp& help, Judgement& judgement);
 
 }  // namespace kinecal
