@@ -11,8 +11,6 @@
 #include <system_error>
 
 #include "kinecal/config/assemble.hpp"
-#include "kinecal/config/choose_images.hpp"
-#include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/config/own_frames.hpp"
@@ -20,8 +18,7 @@
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/shell_word.hpp"
-#include "kinecal/tools/cameras/find_lenses.hpp"
-#include "kinecal/tools/cameras/start_cameras.hpp"
+#include "kinecal/tools/cameras/prepare_cameras.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
@@ -175,13 +172,7 @@ Input read_input(const InputOptions& options) {
     if (options.recorded == Recorded::before) {
       add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
     }
-    input.robot = with_own_frames(input.robot, input.config, input.samples, diagnostics);
-    const auto is_good = [&] { return diagnostics.errors.size() == before; };
-    if (is_good()) find_lenses(input.config, input.robot, input.samples, diagnostics);
-    if (is_good()) start_cameras(input.config, input.robot, input.samples, diagnostics);
-    if (!is_good()) return input;
-    choose_lenses(input.config, input.samples, diagnostics);
-    choose_images(input.config, input.robot, input.samples, diagnostics);
+    if (!prepare_cameras(input.robot, input.config, input.samples, diagnostics)) return input;
     is_open ? leave_open(input, options) : assemble_input(input, options);
     return input;
   }

@@ -7,8 +7,6 @@
 #include <sstream>
 
 #include "kinecal/config/assemble.hpp"
-#include "kinecal/config/choose_images.hpp"
-#include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/own_frames.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
@@ -16,10 +14,9 @@
 #include "kinecal/sensors/lens_camera.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/study/seeded_random.hpp"
-#include "kinecal/tools/cameras/find_lenses.hpp"
 #include "kinecal/tools/cameras/initial_cameras.hpp"
 #include "kinecal/tools/cameras/lens_start.hpp"
-#include "kinecal/tools/cameras/start_cameras.hpp"
+#include "kinecal/tools/cameras/prepare_cameras.hpp"
 #include "support/data.hpp"
 
 namespace kinecal {
@@ -61,12 +58,8 @@ struct Cameras {
   Cameras(const std::string& text, std::vector<Sample> recorded) : samples(std::move(recorded)) {
     config = parse_config(text, "cameras.yaml", diagnostics);
     if (!diagnostics.errors.empty()) return;
-    robot = with_own_frames(parse_urdf(urdf_of_cameras(config), "cameras.urdf"), config, samples,
-                            diagnostics);
-    find_lenses(config, robot, samples, diagnostics);
-    start_cameras(config, robot, samples, diagnostics);
-    choose_lenses(config, samples, diagnostics);
-    choose_images(config, robot, samples, diagnostics);
+    robot = parse_urdf(urdf_of_cameras(config), "cameras.urdf");
+    (void)prepare_cameras(robot, config, samples, diagnostics);
     if (!diagnostics.errors.empty()) return;
     calibration = assemble(config, robot, samples, diagnostics);
     if (diagnostics.errors.empty()) result = calibrate(calibration);

@@ -31,6 +31,10 @@ Eigen::Vector2d CameraStart::pixel(const Vector3<double>& point) const {
 }
 
 std::optional<Pose<double>> CameraStart::pose(const TargetView& view) const {
+  return pose_of_view(view, [this](const Eigen::Vector2d& pixel) { return direction(pixel); });
+}
+
+std::optional<Pose<double>> pose_of_view(const TargetView& view, const PixelDirection& direction) {
   std::vector<Eigen::Vector2d> plane;
   std::vector<Vector3<double>> directions;
   for (std::size_t i = 0; i < view.pixels.size(); ++i) {
@@ -40,6 +44,17 @@ std::optional<Pose<double>> CameraStart::pose(const TargetView& view) const {
     directions.push_back(to);
   }
   return directions.size() < 4 ? std::nullopt : plane_pose(plane, directions);
+}
+
+double farthest_degrees(std::span<const TargetView> views, const PixelDirection& direction) {
+  double most = 0.0;
+  for (const TargetView& view : views) {
+    for (const Eigen::Vector2d& pixel : view.pixels) {
+      const Vector3<double> to = direction(pixel);
+      if (to.allFinite()) most = std::max(most, std::atan2(to.head<2>().norm(), to.z()));
+    }
+  }
+  return most * 180.0 / std::numbers::pi;
 }
 
 namespace detail {
@@ -111,14 +126,8 @@ std::optional<CameraStart> camera_start(std::span<const TargetView> views, doubl
     attempt(best_kind, focal * step);
     attempt(best_kind, focal / step);
   }
-  for (const TargetView& view : views) {
-    for (const Eigen::Vector2d& pixel : view.pixels) {
-      const Vector3<double> to = best->direction(pixel);
-      if (!to.allFinite()) continue;
-      const double angle = std::atan2(to.head<2>().norm(), to.z()) * 180.0 / std::numbers::pi;
-      best->most_degrees = std::max(best->most_degrees, angle);
-    }
-  }
+  best->most_degrees =
+      farthest_degrees(views, [&](const Eigen::Vector2d& pixel) { return best->direction(pixel); });
   return best;
 }
 

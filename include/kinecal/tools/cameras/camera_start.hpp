@@ -10,6 +10,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -25,6 +26,17 @@ struct TargetView {
   std::vector<Eigen::Vector2d> pixels;  ///< (2) each
 };
 
+/// What a pixel (2) shows: (3) of any length in the optical frame; not a number where the lens sees nothing.
+using PixelDirection = std::function<Vector3<double>(const Eigen::Vector2d& pixel)>;
+
+/// camera_T_target of a view; nullopt if its corners do not determine it.
+[[nodiscard]] std::optional<Pose<double>> pose_of_view(const TargetView& view,
+                                                       const PixelDirection& direction);
+
+/// The angle from the axis at which the farthest corner is seen, degrees.
+[[nodiscard]] double farthest_degrees(std::span<const TargetView> views,
+                                      const PixelDirection& direction);
+
 /// A camera of which little is known.
 struct CameraStart {
   RoundLens lens;             ///< rough
@@ -37,7 +49,7 @@ struct CameraStart {
   [[nodiscard]] Vector3<double> direction(const Eigen::Vector2d& pixel) const;
   /// The pixel of a point (3).
   [[nodiscard]] Eigen::Vector2d pixel(const Vector3<double>& point) const;
-  /// camera_T_target of a view; nullopt if its corners do not determine it.
+  /// As above.
   [[nodiscard]] std::optional<Pose<double>> pose(const TargetView& view) const;
 };
 

@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
-#include <set>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/sensors/lens.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
@@ -50,23 +49,6 @@ using Fisheye = LensCamera<Equidistant>;
   return sample;
 }
 
-/// The angle from the axis at which a fisheye shows the farthest corner, degrees.
-[[nodiscard]] double farthest_angle(const CameraInfo& info, std::span<const TargetView> views) {
-  const Fisheye camera{ImageKind::raw};
-  const auto settings = camera.settings({"camera", {}, info});
-  double most = 0.0;
-  for (const TargetView& view : views) {
-    for (const Eigen::Vector2d& pixel : view.pixels) {
-      Measurement<Fisheye, double> m;
-      m.point = {pixel.x(), pixel.y(), 0.0};
-      m.settings = settings;
-      const Vector3<double> to = camera.place(m, std::array<double, 4>{}).direction;
-      if (to.allFinite()) most = std::max(most, std::atan2(to.head<2>().norm(), to.z()));
-    }
-  }
-  return most * 180.0 / std::numbers::pi;
-}
-
 }  // namespace
 }  // namespace detail
 
@@ -102,23 +84,23 @@ std::optional<SingleCamera> single_camera(std::span<const TargetView> views, dou
   detail::Fisheye::Settings own{};
   for (std::size_t i = 0; i < own.size(); ++i) own[i] = result.table[static_cast<int>(i)].value;
   info = detail::Fisheye{ImageKind::raw}.calibrated(info, own);
-  const double angle = detail::farthest_angle(info, views);
+  const Lens fisheye(info, ImageKind::raw);
+  const double angle = farthest_degrees(
+      views, [&](const Eigen::Vector2d& pixel) { return fisheye.ray(pixel.x(), pixel.y()); });
   constexpr double kNarrow = 50.0;  // degrees from the axis
   const std::string wanted(!lens.empty()     ? lens
                            : angle < kNarrow ? PlumbBob::kName
                                              : RationalPolynomial::kName);
   if (wanted != Equidistant::kName) {
-    const std::vector<double> k = info.d;
-    const RoundLens like{info.k[0],
-                         [k](double t) {
-                           const double w = t * t;
-                           return t * (1.0 + w * (k[0] + w * (k[1] + w * (k[2] + w * k[3]))));
-                         },
-                         {}};
+    std::array<double, Equidistant::kCoefficients.size()> d{};
+    std::copy_n(info.d.begin(), d.size(), d.begin());
+    const auto profile = [d](double t) {
+      return Equidistant::image(Vector3<double>(std::sin(t), 0.0, std::cos(t)), d).x();
+    };
+    const RoundLens like{info.k[0], profile, {}};
     info.d = lens_start(wanted, like, angle);
   }
-  info.distortion_model =
-      wanted == ThinPrism::kName ? std::string(RationalPolynomial::kName) : wanted;
+  info.distortion_model = distortion_model_of(wanted);
   info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   info.p = {info.k[0], 0, info.k[2], 0, 0, info.k[4], info.k[5], 0, 0, 0, 1, 0};
   single.info = info;

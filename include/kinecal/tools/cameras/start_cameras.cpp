@@ -11,12 +11,8 @@
 #include <optional>
 #include <string>
 
-#include "kinecal/capture/homography.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/parameters_from_config.hpp"
-#include "kinecal/geometry/rpy.hpp"
-#include "kinecal/problem/sampled_chain.hpp"
-#include "kinecal/samples/paired_features.hpp"
 #include "kinecal/sensors/lens.hpp"
 #include "kinecal/tools/cameras/camera_places.ipp"
 #include "kinecal/tools/cameras/single_camera.hpp"
@@ -93,16 +89,9 @@ void set_info(const std::string& camera, const CameraInfo& found, std::vector<Sa
   std::map<std::size_t, Pose<double>> poses;
   const Lens lens(info, image);
   for (std::size_t s = 0; s < views.size(); ++s) {
-    std::vector<Eigen::Vector2d> plane;
-    std::vector<Vector3<double>> directions;
-    for (std::size_t i = 0; i < views[s].pixels.size(); ++i) {
-      const Vector3<double> ray = lens.ray(views[s].pixels[i].x(), views[s].pixels[i].y());
-      if (!ray.allFinite()) continue;
-      plane.push_back(views[s].plane[i]);
-      directions.push_back(ray);
-    }
-    if (directions.size() < 4) continue;
-    if (const auto pose = plane_pose(plane, directions)) poses.emplace(s, *pose);
+    const auto pose = pose_of_view(
+        views[s], [&](const Eigen::Vector2d& pixel) { return lens.ray(pixel.x(), pixel.y()); });
+    if (pose) poses.emplace(s, *pose);
   }
   return poses;
 }
