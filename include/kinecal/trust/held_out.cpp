@@ -31,6 +31,33 @@ struct SquaredDistances {
   }
 };
 
+/// Fits without each fold, and visits its rows.
+/// @param visit  callable: block, all residuals without its fold, and what poses of the sample's own leave of its rows; these
+///               are fitted to all features of the sample
+template <class Visit>
+void hold_out(AnyEvaluator& evaluator, ParameterValues values, const LinearFit& fit,
+              const std::vector<int>& fold, const ProgressMeter& meter, const Visit& visit) {
+  const int folds = fold.empty() ? 0 : 1 + *std::max_element(fold.begin(), fold.end());
+  const auto in = [&](const RowBlock& block, int k) {
+    return fold[static_cast<std::size_t>(block.sample)] == k;
+  };
+  for (int k = 0; k < folds; ++k) {
+    Eigen::VectorXd weights = fit.loss;
+    for (const RowBlock& block : fit.blocks) {
+      if (in(block, k)) weights.segment(block.first, block.size).setZero();
+    }
+    const auto kept = std::count_if(fold.begin(), fold.end(), [&](int f) { return f != k; });
+    const double priors = static_cast<double>(kept) / static_cast<double>(fold.size());
+    const Refit without = refit(evaluator, values, fit, weights, priors);
+    for (const RowBlock& block : fit.blocks) {
+      if (!in(block, k)) continue;
+      const double used = fit.used.segment(block.first, block.size).mean();
+      visit(block, without.residual, std::max(0.1, 1.0 - used));
+    }
+    if (meter) meter((k + 1.0) / folds, "fitting without each fold");
+  }
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -63,29 +90,12 @@ std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator, ParameterValu
                                           const LinearFit& fit, const std::vector<int>& fold,
                                           const ProgressMeter& meter) {
   const AnyProblem& problem = evaluator.problem();
-  const int folds = fold.empty() ? 0 : 1 + *std::max_element(fold.begin(), fold.end());
-  const auto in = [&](const RowBlock& block, int k) {
-    return fold[static_cast<std::size_t>(block.sample)] == k;
-  };
   detail::SquaredDistances fitted(problem), held_out(problem);
   for (const RowBlock& block : fit.blocks) fitted.add(problem, fit.residual, block, 1.0);
-  // A sample that is held out has poses of its own, fitted to all of its features: what is left of these is compared.
-  const auto left_of = [&](const RowBlock& block) {
-    return std::max(0.1, 1.0 - fit.used.segment(block.first, block.size).mean());
+  const auto add = [&](const RowBlock& block, const Eigen::VectorXd& residual, double left) {
+    held_out.add(problem, residual, block, left);
   };
-  for (int k = 0; k < folds; ++k) {
-    Eigen::VectorXd weights = fit.loss;
-    for (const RowBlock& block : fit.blocks) {
-      if (in(block, k)) weights.segment(block.first, block.size).setZero();
-    }
-    const auto kept = std::count_if(fold.begin(), fold.end(), [&](int f) { return f != k; });
-    const double priors = static_cast<double>(kept) / static_cast<double>(fold.size());
-    const Refit without = refit(evaluator, values, fit, weights, priors);
-    for (const RowBlock& block : fit.blocks) {
-      if (in(block, k)) held_out.add(problem, without.residual, block, left_of(block));
-    }
-    if (meter) meter((k + 1.0) / folds, "fitting without each fold");
-  }
+  detail::hold_out(evaluator, values, fit, fold, meter, add);
   std::vector<HeldOutError> errors;
   for (std::size_t t = 0; t < fitted.sum.size(); ++t) {
     const Term& term = problem.term(static_cast<int>(t));
@@ -96,6 +106,27 @@ std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator, ParameterValu
         {term.name, term.options.unit, fitted.features[t], root(fitted), root(held_out)});
   }
   return errors;
+}
+
+std::vector<double> held_out_squares(const AnyProblem& problem, const FreeSet& free,
+                                     ParameterValues values, std::span<const Sample> samples,
+                                     int folds) {
+  const auto evaluator = problem.evaluator(free, 1);
+  const LinearFit fit =
+      linear_fit(*evaluator, values, determined_coordinates(problem, free, values));
+  const PoseGroups poses = pose_groups(problem, samples);
+  std::vector<double> squares(samples.size(), 0.0), rows(samples.size(), 0.0);
+  const auto add = [&](const RowBlock& block, const Eigen::VectorXd& residual, double left) {
+    const auto s = static_cast<std::size_t>(block.sample);
+    squares[s] += residual.segment(block.first, block.size).squaredNorm();
+    rows[s] += left * static_cast<double>(block.size);
+  };
+  const std::vector<int> fold = folds_of(samples, poses, std::min(folds, poses.count));
+  detail::hold_out(*evaluator, values, fit, fold, {}, add);
+  for (std::size_t s = 0; s < squares.size(); ++s) {
+    if (rows[s] > 0.0) squares[s] /= rows[s];
+  }
+  return squares;
 }
 
 }  // namespace kinecal

@@ -6,42 +6,24 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/choose_images.hpp"
 #include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
-#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/tools/cameras/start_cameras.hpp"
 #include "kinecal/tools/cameras/trial_config.ipp"
 #include "kinecal/tools/cameras/tried_lens.ipp"
 #include "kinecal/trust/folded_lens.hpp"
+#include "kinecal/trust/held_out.hpp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
-
-/// Mean square of each sample at some values; zero without residuals.
-void add_squares(const AnyProblem& problem, const Eigen::VectorXd& values,
-                 const std::vector<std::size_t>& numbers, std::vector<double>& squares) {
-  std::vector<double> sum(numbers.size(), 0.0), left(numbers.size(), 0.0);
-  const FreeSet none({}, problem.table().size());
-  (void)problem.evaluator(none, 1)->evaluate(
-      {values.data(), static_cast<std::size_t>(values.size())}, false,
-      [&](int t, int sample, const TermResiduals& rows) {
-        const auto s = static_cast<std::size_t>(sample);
-        sum[s] += (problem.term(t).weight * rows.factor.cwiseProduct(rows.residual)).squaredNorm();
-        left[s] += static_cast<double>(rows.residual.size()) - rows.used.sum();
-      });
-  for (std::size_t s = 0; s < numbers.size(); ++s) {
-    if (left[s] > 0.5) squares[numbers[s]] = 2.0 * sum[s] / left[s];  // of both coordinates
-  }
-}
 
 /// Calibrates a lens and predicts what was held out.
 void try_lens(const Robot& robot, TriedLens& lens) {
@@ -65,36 +47,17 @@ void try_lens(const Robot& robot, TriedLens& lens) {
   }
   const Eigen::VectorXd solution = result.table.values();
   const CalibrationStep& last = calibration.steps.back();
+  const ParameterValues values{solution.data(), static_cast<std::size_t>(solution.size())};
   const std::vector<FoldedLens> folds =
-      folded_lenses(*last.problem, last.free,
-                    {solution.data(), static_cast<std::size_t>(solution.size())}, lens.samples);
+      folded_lenses(*last.problem, last.free, values, lens.samples);
   if (!folds.empty() && folds.front().is_among_features()) {
     lens.fault = fmt::format("folds over {:.0f} px from the center", folds.front().radius);
     return;
   }
-  constexpr std::size_t kFolds = 5;
-  lens.squares.assign(lens.samples.size(), 0.0);
-  const auto& poses = last.problem->poses_of_samples();
-  for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    std::unique_ptr<AnyProblem> fitted = last.problem->without_samples();
-    const std::unique_ptr<AnyProblem> held_out = last.problem->without_samples();
-    std::vector<std::size_t> numbers;
-    std::vector<std::vector<Pose<double>>> of_fitted, of_held_out;
-    for (std::size_t s = 0; s < lens.samples.size(); ++s) {
-      const bool out = s % kFolds == fold;
-      (out ? held_out : fitted)->add_sample(lens.samples[s]);
-      if (!poses.empty()) (out ? of_held_out : of_fitted).push_back(poses[s]);
-      if (out) numbers.push_back(s);
-    }
-    fitted->set_poses_of_samples(of_fitted);
-    held_out->set_poses_of_samples(of_held_out);
-    Calibration of_fold{result.table, {}};
-    of_fold.steps.push_back(
-        {"fold", last.max_num_iterations, std::move(fitted), last.free, {}, {}});
-    constexpr double kSettled = 1e-8;  // of the cost
-    const Eigen::VectorXd values =
-        calibrate(of_fold, {}, {.function_tolerance = kSettled}).table.values();
-    add_squares(*held_out, values, numbers, lens.squares);
+  try {
+    lens.squares = held_out_squares(*last.problem, last.free, values, lens.samples);
+  } catch (const std::domain_error&) {
+    lens.fault = "samples without a fifth of them do not determine it";
   }
 }
 

@@ -17,18 +17,17 @@ struct TriedLens {
   std::string name;
   Config config;
   std::vector<Sample> samples;
-  std::vector<double>
-      squares;        ///< mean square of each sample while it was held out; 0: it has no residuals
-  std::string fault;  ///< why it is out; empty: it is not
+  std::vector<double> squares;  ///< held_out_squares()
+  std::string fault;            ///< why it is out; empty: it is not
 
-  /// Root of the mean of the squares, pixels.
+  /// Root of the mean of the squared distances of features, pixels.
   [[nodiscard]] double error() const {
     double sum = 0.0, count = 0.0;
     for (const double square : squares) {
       sum += square;
       count += square > 0.0 ? 1.0 : 0.0;
     }
-    return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+    return count > 0.0 ? std::sqrt(2.0 * sum / count) : 0.0;  // of both coordinates
   }
   /// True if its error is significantly smaller than that of another one.
   [[nodiscard]] bool beats(const TriedLens& other) const {
