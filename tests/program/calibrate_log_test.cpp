@@ -63,9 +63,24 @@ class CalibrateLog : public test::ProgramTest {
   [[nodiscard]] bool has_checkpoints() const {
     return fs::exists(folder_ / "out/sums") && !fs::is_empty(folder_ / "out/sums");
   }
+  /// What a calibration to "out" said that a signal ended before it was done. On a busy machine a signal may come when
+  /// all is done: then once more.
+  template <class Run>
+  [[nodiscard]] Outcome ended_early(const Run& run) const {
+    constexpr int kAttempts = 20;
+    Outcome outcome{};
+    for (int k = 0; k < kAttempts; ++k) {
+      fs::remove_all(folder_ / "out");
+      outcome = run();
+      if (!fs::exists(folder_ / "out/calibration.yaml")) break;
+    }
+    return outcome;
+  }
   /// Sends the calibration of one process a signal as soon as it has a checkpoint.
   [[nodiscard]] Outcome stopped_by(int signal) const {
-    return test::run_and_send(folder_, call("out"), signal, [&] { return has_checkpoints(); });
+    return ended_early([&] {
+      return test::run_and_send(folder_, call("out"), signal, [&] { return has_checkpoints(); });
+    });
   }
   void expect_same_files(const std::string& one, const std::string& other) const {
     for (const char* file : {"calibrated.urdf", "calibration.yaml"}) {
@@ -178,7 +193,7 @@ TEST_F(CalibrateLog, GoesOnWhereAProcessWasKilled) {
         "  (until [ -n \"$(ls out/sums 2>/dev/null)\" ]; do :; done; kill -KILL $$) &\n"
         "fi\nexec " +
             call("out") + "\n");
-  const Outcome killed = run(test::in_processes(2, "sh kill.sh"));
+  const Outcome killed = ended_early([&] { return run(test::in_processes(2, "sh kill.sh")); });
   EXPECT_NE(killed.code, 0);
   EXPECT_THAT(killed.err, HasSubstr("Killed"));
   ASSERT_TRUE(has_checkpoints());
