@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/trust/alike_pixels.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/assess_shards.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
@@ -12,6 +13,7 @@
 #include "kinecal/trust/drift.hpp"
 #include "kinecal/trust/estimated_noise.hpp"
 #include "kinecal/trust/f_distribution.hpp"
+#include "kinecal/trust/feature_places.hpp"
 #include "kinecal/trust/folded_lens.hpp"
 #include "kinecal/trust/gradient_variance.hpp"
 #include "kinecal/trust/held_changes.hpp"
@@ -34,6 +36,7 @@
 #include "kinecal/trust/pose_groups.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
 #include "kinecal/trust/prior_pulls.hpp"
+#include "kinecal/trust/projection_map.hpp"
 #include "kinecal/trust/recording_change.hpp"
 #include "kinecal/trust/reluctance.hpp"
 #include "kinecal/trust/repeat_noise.hpp"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinecal/report/cameras_text.ipp"
 #include "kinecal/report/parameters_text.ipp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/trust/repeat_noise.hpp"
@@ -143,6 +144,8 @@ std::string findings_text(const Findings& findings, Figures figures) {
       fmt::format("\nRobot '{}', {} sample{}", findings.robot, samples, samples == 1 ? "" : "s");
   if (!findings.left_out.empty()) text += fmt::format(", {} left out", findings.left_out.size());
   text += "\n\n" + detail::fit_table(findings) + "\n" + detail::parameters_text(findings, figures);
+  const std::string cameras = detail::cameras_text(findings);
+  if (!cameras.empty()) text += "\n" + cameras;
   for (const Assessment& step : findings.assessments) {
     const std::string open =
         observability_text(step.step, step.observability, findings.result.table);

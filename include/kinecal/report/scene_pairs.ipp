@@ -10,16 +10,9 @@
 
 #include "kinecal/errors/plane_fit.hpp"
 #include "kinecal/report/robot_scene.hpp"
+#include "kinecal/trust/feature_places.hpp"
 
 namespace kinecal::detail {
-
-/// A feature in the base: a point, or a line of sight if the sensor observes pixels.
-struct PlacedFeature {
-  Vector3<double> point;                             ///< (3) metres; for a ray, its direction
-  Vector3<double> origin = Vector3<double>::Zero();  ///< (3) of the sensor, metres
-  Vector3<double> axis = Vector3<double>::UnitZ();   ///< (3) of a camera: forward
-  bool seen = true;                                  ///< the feature is not NaN
-};
 
 /// A pair of points; nullopt if one of them is NaN.
 [[nodiscard]] inline std::optional<ScenePair> scene_pair(const Vector3<double>& measured,

@@ -4,36 +4,22 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/report/scene_pairs.ipp"
-#include "kinecal/text/frame_name.hpp"
+#include "kinecal/trust/feature_places.hpp"
 
 namespace kinecal::detail {
-
-/// True if a feature counts.
-[[nodiscard]] inline bool is_seen(const Feature& feature) {
-  return feature.point.allFinite() && (!feature.rotation || feature.rotation->allFinite());
-}
 
 /// The points of a problem for given parameters.
 class ScenePoints {
  public:
   /// @param values  of all parameters of the table
   ScenePoints(const AnyProblem& problem, std::span<const double> values)
-      : problem_(problem), values_(values) {
-    for (const MountedSensor& sensor : problem.sensors()) {
-      auto& corrections = corrections_.emplace_back();
-      for (const SampledChain& chain : sensor.chains()) {
-        corrections.push_back(corrections_for(chain.parameters(), values));
-      }
-    }
-  }
+      : problem_(problem), values_(values), places_(problem, values) {}
 
   /// The pairs that a term compares in a sample, by feature; nullopt where undefined, empty if its
   /// kind cannot be drawn.
@@ -47,7 +33,7 @@ class ScenePoints {
     for (const int s : term.sensors) {
       const Observation* observation = sample.observation(sensor(s).mount().name);
       if (observation == nullptr || !is_known(sensor(s))) return {};
-      seen.push_back(placed(s, *observation, sample));
+      seen.push_back(places_.placed(s, *observation, sample));
     }
     if (kinds == std::vector{plane, plane}) return pairs_of_planes(seen[0], seen[1]);
     std::vector<std::optional<ScenePair>> all;
@@ -122,45 +108,9 @@ class ScenePoints {
     return all;
   }
 
-  [[nodiscard]] Pose<double> frame_in_base(int s, std::size_t chain, const Sample& sample) const {
-    return sensor(s).chains()[chain].tip(sample, corrections_[static_cast<std::size_t>(s)][chain]);
-  }
-
-  /// A measurement in the sensor's frame: a point, or the direction of a line of sight.
-  [[nodiscard]] Vector3<double> in_sensor(const MountedSensor& of, const Vector3<double>& recorded,
-                                          const std::vector<double>& settings) const {
-    const Vector3<double> m = of.sensor().measurement(recorded, settings);
-    return of.sensor().place(m, settings, of.own_values(values_));
-  }
-
-  [[nodiscard]] std::vector<PlacedFeature> placed(int s, const Observation& seen,
-                                                  const Sample& sample) const {
-    const MountedSensor& of = sensor(s);
-    const bool rays = of.sensor().places() == Quantity::ray;
-    const std::vector<double> settings = of.sensor().settings(seen);
-    std::map<std::string, Pose<double>> frames;
-    std::vector<PlacedFeature> all;
-    for (const Feature& feature : seen.features) {
-      auto frame = frames.find(feature.frame);
-      if (frame == frames.end()) {
-        std::size_t chain = 0;
-        for (std::size_t c = 1; c < of.chains().size(); ++c) {
-          if (same_frame(of.chains()[c].chain().tip, feature.frame)) chain = c;
-        }
-        frame = frames.emplace(feature.frame, frame_in_base(s, chain, sample)).first;
-      }
-      const Pose<double>& base_T_sensor = frame->second;
-      const Vector3<double> p =
-          is_seen(feature) ? in_sensor(of, feature.point, settings) : feature.point;
-      all.push_back({rays ? Vector3<double>(base_T_sensor.rotation * p) : base_T_sensor * p,
-                     base_T_sensor.translation, base_T_sensor.rotation.col(2), is_seen(feature)});
-    }
-    return all;
-  }
-
   const AnyProblem& problem_;
   std::span<const double> values_;
-  std::vector<std::vector<Corrections<double>>> corrections_;  ///< of each sensor and chain
+  FeaturePlaces places_;
 };
 
 }  // namespace kinecal::detail

@@ -12,6 +12,7 @@
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/report/robot_scene.hpp"
 #include "kinecal/report/scene_floating.ipp"
+#include "kinecal/text/frame_name.hpp"
 
 namespace kinecal::detail {
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kinecal/solve/calibrate.hpp"
+#include "kinecal/trust/alike_pixels.hpp"
 #include "kinecal/trust/captures.hpp"
 #include "kinecal/trust/common_noise.hpp"
 #include "kinecal/trust/folded_lens.hpp"
@@ -18,6 +19,7 @@
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
 #include "kinecal/trust/prior_pulls.hpp"
+#include "kinecal/trust/projection_map.hpp"
 #include "kinecal/trust/recording_change.hpp"
 #include "kinecal/trust/residual_pattern.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
@@ -49,6 +51,8 @@ struct Assessment {
   std::optional<ResidualPattern> pattern;  ///< that the model does not contain
   std::optional<LensPattern> lens;         ///< a camera's lens that is not as it was taken
   std::vector<FoldedLens> folded;          ///< lenses that fold over inside the image
+  std::vector<ProjectionMap> maps;         ///< of cameras of which something is free
+  std::vector<AlikePixels> alike;          ///< of the same cameras
   std::vector<IdleGroup> idle;             ///< whose parameters improve nothing
   std::vector<PriorPull> pulls;            ///< priors that the samples contradict
   std::optional<PoseUncertainty> pose;     ///< of the frames that the first error block compares

@@ -1,0 +1,66 @@
+// How good cameras are, in the text report.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/geometry/median.hpp"
+#include "kinecal/report/findings.hpp"
+#include "kinecal/text/reading.hpp"
+
+namespace kinecal::detail {
+
+/// The median over the cells with features of what a point at their distance is known to, metres.
+[[nodiscard]] inline double known_metres(const ProjectionMap& map) {
+  std::vector<double> metres;
+  for (const KnownPixel& cell : map.cells) {
+    if (cell.features > 0 && std::isfinite(cell.metres)) metres.push_back(cell.metres);
+  }
+  return metres.empty() ? 0.0 : median_of(std::move(metres));
+}
+
+/// "Camera 'eye': +- 0.03 px where features are (0.05 mm at 0.8 m), 0.4 px at the worst place of its image".
+[[nodiscard]] inline std::string camera_text(const ProjectionMap& map) {
+  const auto [least, median, most] = map.deviations();
+  std::string text = fmt::format("Camera '{}': a pixel is known to {} where features are", map.sensor,
+                                 std::isfinite(median) ? reading(median, "px") : "nothing");
+  if (map.distance > 0.0 && std::isfinite(median)) {
+    text += fmt::format(" ({} at {:.2g} m)", reading(known_metres(map), "m"), map.distance);
+  }
+  if (std::isfinite(most)) {
+    text += fmt::format(", to {} at the worst place of its image", reading(most, "px"));
+  }
+  text += "\n";
+  if (map.halves) {
+    text += fmt::format("  two halves of the samples differ by {}; the +- allow {}\n",
+                        reading(map.halves->difference, "px"), reading(map.halves->allowed, "px"));
+  }
+  return text;
+}
+
+/// "residuals depend on the place in the image by 0.2 px, most at the upper left (+0.3, -0.1 px)"; empty if that is chance.
+[[nodiscard]] inline std::string place_text(const AlikePixels& pixels) {
+  constexpr double kChance = 0.01;
+  if (!(pixels.alike > 0.0) || pixels.chance > kChance) return "";
+  return fmt::format(
+      "  of the residuals, {} depend on the place in the image, most at the {} ({:+.2f}, {:+.2f} "
+      "px)\n",
+      reading(pixels.alike, "px"), pixels.region, pixels.there[0], pixels.there[1]);
+}
+
+[[nodiscard]] inline std::string cameras_text(const Findings& findings) {
+  std::string text;
+  if (findings.assessments.empty()) return text;
+  const Assessment& last = findings.assessments.back();
+  for (std::size_t i = 0; i < last.maps.size(); ++i) {
+    text += camera_text(last.maps[i]) + place_text(last.alike[i]);
+  }
+  return text;
+}
+
+}  // namespace kinecal::detail
