@@ -27,8 +27,9 @@ namespace kinecal::detail {
 /// "Camera 'eye': +- 0.03 px where features are (0.05 mm at 0.8 m), 0.4 px at the worst place of its image".
 [[nodiscard]] inline std::string camera_text(const ProjectionMap& map) {
   const auto [least, median, most] = map.deviations();
-  std::string text = fmt::format("Camera '{}': a pixel is known to {} where features are", map.sensor,
-                                 std::isfinite(median) ? reading(median, "px") : "nothing");
+  std::string text =
+      fmt::format("Camera '{}': a pixel is known to {} where features are", map.sensor,
+                  std::isfinite(median) ? reading(median, "px") : "nothing");
   if (map.distance > 0.0 && std::isfinite(median)) {
     text += fmt::format(" ({} at {:.2g} m)", reading(known_metres(map), "m"), map.distance);
   }

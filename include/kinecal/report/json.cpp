@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinecal/files/json/json_text.hpp"
+#include "kinecal/report/json_cameras.ipp"
 #include "kinecal/report/json_state.ipp"
 
 namespace kinecal {
@@ -184,6 +185,7 @@ std::string json_report(const Findings& findings) {
       {"common_noise", detail::json(last.common)},
       {"parameters", json_list(result.calibrated, parameter)},
       {"pose", last.pose ? detail::json(*last.pose, last.elsewhere) : detail::Json()},
+      {"cameras", detail::json_cameras(last)},
       {"observability", json_list(findings.assessments, observability)},
       {"bad_samples", detail::json_captures(findings, last)},
       {"left_out", json_list(findings.left_out, write)},

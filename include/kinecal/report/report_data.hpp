@@ -16,6 +16,7 @@
 
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/robot_scene.hpp"
+#include "kinecal/trust/projection_map.hpp"
 #include "kinecal/trust/workspace_map.hpp"
 
 namespace kinecal {
@@ -105,6 +106,7 @@ struct ReportData {
   int rank = 0;                         ///< number of combinations that are observable
   std::optional<PoseUncertainty> pose;  ///< of the frames that the first error block compares
   std::vector<KnownPoint> workspace;    ///< of the origin of that pose, over the robot's workspace
+  std::vector<ProjectionMap> cameras;   ///< how well they are known, of which something is free
   std::string summary;                  ///< the report as text
 };
 

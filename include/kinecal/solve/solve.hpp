@@ -67,7 +67,8 @@ struct StepResult {
 /// @param values  of all parameters of the problem's table: in: where to start; out: where it
 ///                ended.  Unchanged if the result is not usable (see StepResult::termination)
 /// @throws std::invalid_argument  if a free parameter belongs to no joint, frame or sensor of the
-///                                problem, or if the number of values is not that of its table
+///                                problem, if the number of values is not that of its table, or if
+///                                nothing is free
 [[nodiscard]] StepResult solve(const AnyProblem& problem, const FreeSet& free,
                                Eigen::VectorXd& values, const SolveOptions& options = {});
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <stdexcept>
 #include <utility>
 
 #include "kinecal/solve/solve.hpp"
@@ -11,6 +12,7 @@ namespace kinecal {
 
 KINECAL_INLINE StepResult solve(const AnyProblem& problem, const FreeSet& free,
                                 Eigen::VectorXd& values, const SolveOptions& options) {
+  if (free.size() == 0) throw std::invalid_argument("nothing is free: there is nothing to solve");
   StepResult result;
   result.num_parameters = free.size();
   // Priors count once for each sample.

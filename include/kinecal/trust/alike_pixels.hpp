@@ -23,13 +23,14 @@ namespace kinecal {
 
 /// How far residuals of a camera depend on the place in its image.
 struct AlikePixels {
-  std::string sensor;               ///< the camera
-  double all = 0.0;                 ///< root of the mean squared residual of a feature, pixels
-  double alike = 0.0;               ///< s, the part of it that depends on the place, pixels; 0: none
-  double chance = 1.0;              ///< probability of such a part, or a larger one
-  std::string region;               ///< where it is largest: "upper left"
-  std::array<double, 2> there{};    ///< mean residual in the cell where it is largest, pixels: predicted less observed
-  std::array<double, 2> pixel{};    ///< the middle of that cell
+  std::string sensor;   ///< the camera
+  double all = 0.0;     ///< root of the mean squared residual of a feature, pixels
+  double alike = 0.0;   ///< s, the part of it that depends on the place, pixels; 0: none
+  double chance = 1.0;  ///< probability of such a part, or a larger one
+  std::string region;   ///< where it is largest: "upper left"
+  std::array<double, 2>
+      there{};  ///< mean residual in the cell where it is largest, pixels: predicted less observed
+  std::array<double, 2> pixel{};  ///< the middle of that cell
 };
 
 /// Measures it for each camera that is compared with something else.

@@ -56,6 +56,31 @@ inline void judge_folds(const Assessment& step, Judgement& judgement) {
   }
 }
 
+/// Halves of the samples that put pixels apart, and residuals that depend on the place in the image.
+inline void judge_projection(const Assessment& step, Judgement& judgement) {
+  constexpr double kChance = 0.01, kPart = 0.35, kSmallChance = 1e-3, kTimes = 2.0, kPixels = 0.1;
+  const std::string cause =
+      ": its lens has a shape that its model does not have, or the target has one; try another "
+      "('lens: auto'), or measure the target";
+  for (std::size_t i = 0; i < step.maps.size(); ++i) {
+    const ProjectionMap& map = step.maps[i];
+    const AlikePixels& alike = step.alike[i];
+    if (alike.chance < kChance && alike.alike > std::max(kPixels, kPart * alike.all)) {
+      judgement.add(Grade::use_with_care,
+                    "residuals of '" + map.sensor + "' depend on the place in its image (" +
+                        reading(alike.alike, "px") + " of " + reading(alike.all, "px") +
+                        ", most at the " + alike.region + ")" + cause);
+    } else if (map.halves && map.halves->chance < kSmallChance &&
+               map.halves->difference > kPixels &&
+               map.halves->difference > kTimes * map.halves->allowed) {
+      judgement.add(Grade::use_with_care, "two halves of the samples put pixels of '" + map.sensor +
+                                              "' " + reading(map.halves->difference, "px") +
+                                              " apart, the +- allow " +
+                                              reading(map.halves->allowed, "px") + cause);
+    }
+  }
+}
+
 /// The share of the noise that a pattern or a change leaves; 1 if there is none.
 [[nodiscard]] inline double left_by_others(const Assessment& step) {
   return std::min(step.pattern ? step.pattern->noise_left : 1.0,

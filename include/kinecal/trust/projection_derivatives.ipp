@@ -16,7 +16,8 @@ class SolvedProjection {
  public:
   using PixelByFree = Eigen::Matrix<double, 2, Eigen::Dynamic>;  ///< (2 x free), pixels
   using PixelByPoint = Eigen::Matrix<double, 2, 3>;              ///< pixels per metre
-  using PixelByMotion = Eigen::Matrix<double, 2, 6>;  ///< translation in units of a distance, rotation
+  using PixelByMotion =
+      Eigen::Matrix<double, 2, 6>;  ///< translation in units of a distance, rotation
 
   /// @param settings  of its observations
   SolvedProjection(const MountedSensor& camera, const FreeSet& free, ParameterValues values,

@@ -63,7 +63,8 @@ void set_distances(const AnyProblem& problem, const FeaturePlaces& places, int c
     const Observation* seen = sample.observation(mounted.mount().name);
     if (seen == nullptr) continue;
     if (all.settings.empty()) all.settings = mounted.sensor().settings(*seen);
-    if (info == nullptr && seen->camera) info = &*recorded.observation(mounted.mount().name)->camera;
+    if (info == nullptr && seen->camera)
+      info = &*recorded.observation(mounted.mount().name)->camera;
     std::vector<double> distances(seen->features.size(), 0.0);
     set_distances(problem, places, camera, sample, distances);
     for (std::size_t i = 0; i < seen->features.size(); ++i) {
@@ -161,8 +162,8 @@ class CameraMap {
     for (std::size_t i = 0; i < seen_.pixels.size(); i += step) {
       const double distance = seen_.distances[i];
       const Vector3<double> p = point(seen_.pixels[i], distance);
-      taken.add(camera_.by_free(p),
-                SolvedProjection::by_motion(camera_.by_point(p), p, distance > 0.0 ? distance_ : 0.0));
+      taken.add(camera_.by_free(p), SolvedProjection::by_motion(camera_.by_point(p), p,
+                                                                distance > 0.0 ? distance_ : 0.0));
     }
     return taken.motion();
   }
@@ -178,9 +179,8 @@ class CameraMap {
     cell.covariance = {c(0, 0), c(1, 1), c(0, 1)};
     const Eigen::Matrix<double, 3, 2> across =
         by_point.transpose() * (by_point * by_point.transpose()).inverse();
-    cell.metres = distance_ > 0.0
-                      ? std::sqrt(std::max(0.0, (across * c * across.transpose()).trace()))
-                      : 0.0;
+    cell.metres =
+        distance_ > 0.0 ? std::sqrt(std::max(0.0, (across * c * across.transpose()).trace())) : 0.0;
     if (!determined_ && c.allFinite()) {
       cell.covariance = {HUGE_VAL, HUGE_VAL, 0.0};
       cell.metres = HUGE_VAL;
@@ -220,7 +220,9 @@ class CameraMap {
 }  // namespace
 }  // namespace detail
 
-double KnownPixel::deviation() const { return std::sqrt(covariance[0] + covariance[1]); }
+double KnownPixel::deviation() const {
+  return std::sqrt(covariance[0] + covariance[1]);
+}
 
 const KnownPixel* ProjectionMap::at(double u, double v) const {
   const auto part = [](double x, double from, double to, int parts) {

@@ -35,7 +35,8 @@ struct KnownPixel {
   /// Variances of u and v and their covariance, square pixels; infinite if not determined, NaN where the lens sees
   /// nothing.
   std::array<double, 3> covariance{};
-  double metres = 0.0;      ///< standard deviation of a point at ProjectionMap::distance, across the line of sight
+  double metres =
+      0.0;  ///< standard deviation of a point at ProjectionMap::distance, across the line of sight
   double difference = 0.0;  ///< between two halves of the poses, solved apart, pixels
 
   /// Standard deviation of the pixel, pixels: sqrt(trace).
@@ -51,12 +52,13 @@ struct HalvesApart {
 
 /// How well a camera's projection is known.
 struct ProjectionMap {
-  std::string sensor;             ///< the camera
-  std::array<double, 2> low{};    ///< corner of the image, pixels; of what features cover if its size is unknown
-  std::array<double, 2> high{};   ///< the opposite corner
-  int columns = 0, rows = 0;      ///< cells
-  double distance = 0.0;          ///< of features from the camera, median, metres; 0: unknown
-  std::vector<KnownPixel> cells;  ///< row by row
+  std::string sensor;  ///< the camera
+  std::array<double, 2>
+      low{};  ///< corner of the image, pixels; of what features cover if its size is unknown
+  std::array<double, 2> high{};       ///< the opposite corner
+  int columns = 0, rows = 0;          ///< cells
+  double distance = 0.0;              ///< of features from the camera, median, metres; 0: unknown
+  std::vector<KnownPixel> cells;      ///< row by row
   std::optional<HalvesApart> halves;  ///< nullopt if there are too few poses
 
   /// The cell of a pixel; nullptr outside.
@@ -68,11 +70,11 @@ struct ProjectionMap {
 
 /// What is known of the solution.
 struct KnownSolution {
-  AnyEvaluator& evaluator;         ///< of the problem and its free parameters
-  const FreeSet& free;             ///< those of the evaluator
-  ParameterValues values;          ///< of all parameters of the table
-  const LinearFit& fit;            ///< there
-  const Uncertainty& uncertainty;  ///< of the free parameters
+  AnyEvaluator& evaluator;          ///< of the problem and its free parameters
+  const FreeSet& free;              ///< those of the evaluator
+  ParameterValues values;           ///< of all parameters of the table
+  const LinearFit& fit;             ///< there
+  const Uncertainty& uncertainty;   ///< of the free parameters
   std::span<const Sample> samples;  ///< those of the problem, in their order
   const PoseGroups& poses;          ///< of these
 };
