@@ -31,7 +31,8 @@ inline ParameterTable scene_table() {
   for (const char* frame : {"head_pan", "camera_joint", "elbow_mount", "board"}) {
     for (auto axis : kFrameAxes) table.add({.name = parameter_name(frame, axis)});
   }
-  for (const ParameterInfo& info : DepthCamera::kParameters) {
+  for (const ParameterInfo& info :
+       std::span(DepthCamera::kParameters).first(DepthCamera::kWithoutPolynomial)) {
     table.add({.name = parameter_name("camera", info.name)});
   }
   for (const ParameterInfo& info : std::span(PinholeCamera::kParameters).first(kIntrinsics)) {
