@@ -11,7 +11,7 @@
 // Weakly determined together: z_offset, z_scaling and z_quadratic, unless features are at three or more depths that
 // differ by half; z_x with cx and the camera's rotation about y, z_y with cy and the one about x, unless features
 // reach the edges of the image (these differ by x^2 only); z_xx + z_yy with z_scaling for features near the center.
-// Source: Khoshelham, Oude Elberink (2012), Accuracy and resolution of Kinect depth data, eq. 5, for z^2.
+// Source: Khoshelham, Oude Elberink (2012), Accuracy and resolution of Kinect depth data: z^2.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
