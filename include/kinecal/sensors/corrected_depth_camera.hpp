@@ -8,7 +8,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <span>
 
@@ -25,7 +24,8 @@ class CorrectedDepthCamera {
  public:
   /// @param pose      of the camera in the base; must outlive this
   /// @param recorded  fx fy cx cy z_offset z_scaling: DepthCamera::settings()
-  /// @param v         (12) parameters: corrections of the recorded settings, polynomial; or the first (6)
+  /// @param v         (12) parameters: corrections of the recorded settings, polynomial; or the first (6); must
+  ///                  outlive this
   CorrectedDepthCamera(const Pose<Q>& pose, const std::array<Q, 6>& recorded,
                        std::span<const double> v)
       : pose_(pose),
@@ -38,12 +38,9 @@ class CorrectedDepthCamera {
         by_fx_(-(recorded[0] * per_fx_)),
         by_fy_(-(recorded[1] * per_fy_)),
         offset_(v[4]),
-        factor_(1.0 + v[5]) {
-    if (v.size() <= kPlain) return;
-    std::copy_n(v.begin() + kPlain, kDepthTerms, polynomial_.begin());
-    bends_ = std::any_of(polynomial_.begin(), polynomial_.end(), [](double c) { return c != 0.0; });
-    x_ = {Q(1.0) / recorded[0], recorded[2]};
-    y_ = {Q(1.0) / recorded[1], recorded[3]};
+        factor_(1.0 + v[5]),
+        polynomial_(v.subspan(kPlain)) {
+    for (const double c : polynomial_) bends_ |= c != 0.0;
   }
 
   /// The point of a measurement and its derivatives.
@@ -54,87 +51,86 @@ class CorrectedDepthCamera {
   Vector3<Q> place(const Vector3<Q>& m, std::span<const int> chosen, Vector3<Q>* changes) const {
     const Matrix3<Q>& r = pose_.rotation;
     const Q s = (m.x() - cx_) * per_fx_, t = (m.y() - cy_) * per_fy_;
-    const Q raw = m.z() + offset_, plain = raw * factor_;
+    const Q raw = m.z() + offset_, depth = raw * factor_;
     const Vector3<Q> ray(r(0, 0) * s + r(0, 1) * t + r(0, 2), r(1, 0) * s + r(1, 1) * t + r(1, 2),
                          r(2, 0) * s + r(2, 1) * t + r(2, 2));
-    if (bends_ || (!chosen.empty() && chosen.back() >= kPlain)) {
-      return place_bent(m, {s, t, raw, plain, ray}, chosen, changes);
+    if (bends_ || (!chosen.empty() && chosen.back() >= kPlain)) [[unlikely]] {
+      // with the recorded settings: (u - cx0) / fx0
+      const Q x = -(m.x() * per_fx_ + s_by_cx_) / by_fx_,
+              y = -(m.y() * per_fy_ + t_by_cy_) / by_fy_;
+      return bent(pose_, ray, polynomial_, {x, y, depth},
+                  {s * by_fx_, t * by_fy_, s_by_cx_, t_by_cy_, factor_, raw}, chosen, changes);
     }
+    Vector3<Q> p;
+    for (int i = 0; i < 3; ++i) p(i) = pose_.translation(i) + ray(i) * depth;
     if (chosen.size() == kPlain) {  // the usual case: all of them, in order
-      changes[0] = times(r.col(0), s * plain * by_fx_);
-      changes[1] = times(r.col(1), t * plain * by_fy_);
-      changes[2] = times(r.col(0), s_by_cx_ * plain);
-      changes[3] = times(r.col(1), t_by_cy_ * plain);
+      changes[0] = times(r.col(0), s * depth * by_fx_);
+      changes[1] = times(r.col(1), t * depth * by_fy_);
+      changes[2] = times(r.col(0), s_by_cx_ * depth);
+      changes[3] = times(r.col(1), t_by_cy_ * depth);
       changes[4] = times(ray, factor_);
       changes[5] = times(ray, raw);
-    } else {
-      const Seen seen{s, t, raw, plain, ray};
-      for (const int k : chosen) *changes++ = change(k, seen, plain, Q(1.0));
+      return p;
     }
-    return at(ray, plain);
+    for (const int k : chosen) {
+      switch (k) {
+        case 0:
+          *changes++ = times(r.col(0), s * depth * by_fx_);
+          break;
+        case 1:
+          *changes++ = times(r.col(1), t * depth * by_fy_);
+          break;
+        case 2:
+          *changes++ = times(r.col(0), s_by_cx_ * depth);
+          break;
+        case 3:
+          *changes++ = times(r.col(1), t_by_cy_ * depth);
+          break;
+        case 4:
+          *changes++ = times(ray, factor_);
+          break;
+        default:
+          *changes++ = times(ray, raw);
+      }
+    }
+    return p;
   }
 
  private:
-  static constexpr int kPlain = 6;  ///< fx fy cx cy z_offset z_scaling
-
-  /// What a measurement gives before the polynomial.
-  struct Seen {
-    Q s, t;          ///< of the corrected ray (s, t, 1)
-    Q raw, plain;    ///< z0 + z_offset, and z1; metres
-    Vector3<Q> ray;  ///< in the base
-  };
-  /// The recorded focal length, inverse, and principal point of an axis of the image.
-  struct RecordedAxis {
-    Q per_f = Q(0.0), c = Q(0.0);
-  };
+  static constexpr std::size_t kPlain = 6;  ///< fx fy cx cy z_offset z_scaling
 
   [[nodiscard]] static Vector3<Q> times(const auto& v, const Q& x) {
     return Vector3<Q>(v(0) * x, v(1) * x, v(2) * x);
   }
-  [[nodiscard]] Vector3<Q> at(const Vector3<Q>& ray, const Q& depth) const {
-    Vector3<Q> p;
-    for (int i = 0; i < 3; ++i) p(i) = pose_.translation(i) + ray(i) * depth;
-    return p;
-  }
-  /// The derivative by one of the first six parameters.
-  /// @param slope  dz'/dz1
-  [[nodiscard]] Vector3<Q> change(int k, const Seen& seen, const Q& depth, const Q& slope) const {
-    const Matrix3<Q>& r = pose_.rotation;
-    switch (k) {
-      case 0:
-        return times(r.col(0), seen.s * depth * by_fx_);
-      case 1:
-        return times(r.col(1), seen.t * depth * by_fy_);
-      case 2:
-        return times(r.col(0), s_by_cx_ * depth);
-      case 3:
-        return times(r.col(1), t_by_cy_ * depth);
-      case 4:
-        return times(seen.ray, factor_ * slope);
-      default:
-        return times(seen.ray, seen.raw * slope);
-    }
-  }
-  /// place() with the polynomial.
-  Vector3<Q> place_bent(const Vector3<Q>& m, const Seen& seen, std::span<const int> chosen,
-                        Vector3<Q>* changes) const {
-    const Q x = (m.x() - x_.c) * x_.per_f, y = (m.y() - y_.c) * y_.per_f;
-    const std::array<Q, kDepthTerms> terms = depth_terms(seen.plain, x, y);
+  /// place() with the polynomial.  Not inlined, and all by value: the loop of the usual case stays as it is.
+  /// @param seen  x, y and z1
+  /// @param by    derivatives by the first six parameters: the four of (s, t), the two of z1
+  [[gnu::noinline]] static Vector3<Q> bent(const Pose<Q>& pose, const Vector3<Q>& ray,
+                                           std::span<const double> polynomial,
+                                           const Vector3<Q>& seen, const std::array<Q, kPlain>& by,
+                                           std::span<const int> chosen, Vector3<Q>* changes) {
+    const Q& z = seen.z();
+    const std::array<Q, kDepthTerms> terms = depth_terms(z, seen.x(), seen.y());
     Q factor(1.0);
-    for (std::size_t i = 0; i < kDepthTerms; ++i) factor = factor + Q(polynomial_[i]) * terms[i];
-    const Q depth = seen.plain * factor, slope = factor + Q(polynomial_[0]) * seen.plain;
-    for (const int k : chosen) {
-      *changes++ = k < kPlain ? change(k, seen, depth, slope)
-                              : times(seen.ray, seen.plain * terms[std::size_t(k - kPlain)]);
+    for (std::size_t i = 0; i < kDepthTerms; ++i) factor = factor + Q(polynomial[i]) * terms[i];
+    const Q depth = z * factor, slope = factor + Q(polynomial[0]) * z;
+    for (const int parameter : chosen) {
+      const auto k = static_cast<std::size_t>(parameter);
+      if (k < 4) {
+        *changes++ = times(pose.rotation.col(parameter % 2), by[k] * depth);
+      } else {
+        *changes++ = times(ray, k < kPlain ? by[k] * slope : z * terms[k - kPlain]);
+      }
     }
-    return at(seen.ray, depth);
+    Vector3<Q> p;
+    for (int i = 0; i < 3; ++i) p(i) = pose.translation(i) + ray(i) * depth;
+    return p;
   }
 
   const Pose<Q>& pose_;
   Q per_fx_, per_fy_, cx_, cy_, s_by_cx_, t_by_cy_, by_fx_, by_fy_, offset_, factor_;
-  RecordedAxis x_, y_;
-  std::array<double, kDepthTerms> polynomial_{};
-  bool bends_ = false;  ///< a coefficient is not zero
+  std::span<const double> polynomial_;  ///< its coefficients, or none
+  bool bends_ = false;                  ///< one of them is not zero
 };
 
 }  // namespace kinecal

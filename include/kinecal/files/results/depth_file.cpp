@@ -31,7 +31,7 @@ constexpr std::array kDepthNumbers = {
     DepthNumber{"cx", "pixels", &DepthErrors::cx},
     DepthNumber{"cy", "pixels", &DepthErrors::cy},
     DepthNumber{"recorded_z_offset", "m", &DepthErrors::recorded_z_offset},
-    DepthNumber{"recorded_z_scaling", "1", &DepthErrors::recorded_z_scaling},
+    DepthNumber{"recorded_z_scaling", "a factor", &DepthErrors::recorded_z_scaling},
     DepthNumber{"z_offset", "m", &DepthErrors::z_offset},
     DepthNumber{"z_scaling", "1", &DepthErrors::z_scaling},
     DepthNumber{"z_quadratic", "1/m", &DepthErrors::z_quadratic},
