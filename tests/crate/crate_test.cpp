@@ -43,6 +43,8 @@ static_assert(Crate<Joints, HandEye>::Free::kSize == HandEye::Free::kSize);
 
 static_assert(All::Sensors::kSize == 4 && All::Blocks::kSize == 4 && All::Priors::kSize == 1);
 static_assert(All::Free::kSize == 3 + 6 + 3 + 6 + 6 + 1 + 2 + 2 + 4 + 1, "each once");
+using Bent = Crate<HandEye, DepthPolynomial<"camera">>;
+static_assert(Bent::Free::kSize == HandEye::Free::kSize + kDepthTerms);
 static_assert(std::is_same_v<Crate<HandEye, HandEye>::Parameters, HandEye::Parameters>);
 
 /// The same calibration put together at run time.
@@ -139,6 +141,13 @@ void expect_the_same() {
   expect_the_same<S>(test::all_free(table));
   expect_the_same<S>(test::free_of(table, {"elbow", "camera_joint_a", "camera_z_offset"}));
   expect_the_same<S>(FreeSet({}, table.size()));
+}
+
+TEST(Crate, ADepthCameraMayBendDepth) {
+  const ParameterTable table = Bent().table({});
+  EXPECT_EQ(table["camera_z_quadratic"].unit, "1/m");
+  EXPECT_EQ(table["camera_z_yy"].unit, "1");
+  EXPECT_EQ(table["camera_z_yy"].value, 0.0);
 }
 
 TEST(Crate, EvaluatesAsTheSameProblemOfRunTime) {

@@ -9,9 +9,9 @@ namespace {
 // Derivatives, packets and rays of both: tests/testing/check_sensor_test.cpp.
 
 /// The point of a measurement, for any scalar of the parameters.
-template <class S>
+template <class S, std::size_t N>
 Vector3<S> point(const std::array<double, 6>& settings, const Vector3<double>& measured,
-                 const std::array<S, 6>& v) {
+                 const std::array<S, N>& v) {
   return DepthCamera{}.place(
       Measurement<DepthCamera, double>{.point = measured, .settings = settings}, v);
 }
@@ -26,7 +26,7 @@ TEST(DepthCamera, GivesBackTheRecordedPointWithTheRecordedSettings) {
 
 TEST(DepthCamera, FollowsTheDriversDepthFormula) {
   const Vector3<double> p =
-      point<double>({550, 545, 320, 240, 0.0, 1.0}, {320, 240, 2.0}, {0, 0, 0, 0, 0.01, -0.1});
+      point<double, 6>({550, 545, 320, 240, 0.0, 1.0}, {320, 240, 2.0}, {0, 0, 0, 0, 0.01, -0.1});
   EXPECT_LE((p - Vector3<double>(0, 0, 2.01 * 0.9)).norm(), 1e-15);
 }
 
@@ -36,7 +36,7 @@ TEST(DepthCamera, FindsThePixelAndRawDepthOfAPoint) {
   const Vector3<double> measured = DepthCamera::measurement({0.5, -0.25, 1.25}, camera);
   EXPECT_LE((measured - Vector3<double>(520, 160, 0.98)).norm(), 1e-12);
   // fx = 1000, fy = 200, cx = 160, cy = 360, z = (0.98 + 0.52) * 2
-  const Vector3<double> p = point<double>(camera, measured, {1.0, -0.5, -0.5, 0.5, 0.52, 1.0});
+  const Vector3<double> p = point<double, 6>(camera, measured, {1.0, -0.5, -0.5, 0.5, 0.52, 1.0});
   EXPECT_LE((p - Vector3<double>(360 * 3.0 / 1000, -200 * 3.0 / 200, 3.0)).norm(), 1e-12);
 }
 

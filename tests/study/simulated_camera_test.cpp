@@ -68,7 +68,7 @@ TEST(SimulatedCamera, BrightnessHasItsNoiseAndEndsAt255) {
 TEST(SimulatedCamera, ItsPointsAreThoseThatDepthCameraCorrects) {
   SimulatedCamera camera;
   camera.depth_noise = 0.0;
-  camera.errors = {0.01, -0.02, 0.015, 0.012, 0.005, -0.01};
+  camera.errors = {0.01, -0.02, 0.015, 0.012, 0.005, -0.01, 0.02, 0.03, -0.02, 0.04, -0.03, 0.02};
   SeededRandom random(3);
   const SimulatedLens lens(camera);
   const View view = photograph(camera, lens, flat_picture(100, 1.2F), random);

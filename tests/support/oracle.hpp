@@ -166,7 +166,12 @@ Vector3<S> oracle_depth_point(const CameraInfo& info, const Vector3<double>& rec
   const double u = cx + fx * recorded.x() / recorded.z();
   const double v = cy + fy * recorded.y() / recorded.z();
   const double raw = recorded.z() / info.z_scaling - info.z_offset;
-  const S z = (values(camera + "_z_offset") + raw) * (values(camera + "_z_scaling") + 1.0);
+  const S plain = (values(camera + "_z_offset") + raw) * (values(camera + "_z_scaling") + 1.0);
+  const double x = recorded.x() / recorded.z(), y = recorded.y() / recorded.z();
+  const S z = plain + plain * plain * values(camera + "_z_quadratic") +
+              plain * (values(camera + "_z_x") * x + values(camera + "_z_y") * y +
+                       values(camera + "_z_xx") * (x * x) + values(camera + "_z_xy") * (x * y) +
+                       values(camera + "_z_yy") * (y * y));
   const S new_fx = fx * (values(camera + "_fx") + 1.0),
           new_cx = cx * (values(camera + "_cx") + 1.0);
   const S new_fy = fy * (values(camera + "_fy") + 1.0),

@@ -31,7 +31,8 @@ inline ParameterTable scene_table() {
   for (const char* frame : {"head_pan", "camera_joint", "elbow_mount", "board"}) {
     for (auto axis : kFrameAxes) table.add({.name = parameter_name(frame, axis)});
   }
-  for (const ParameterInfo& info : DepthCamera::kParameters) {
+  for (const ParameterInfo& info :
+       std::span(DepthCamera::kParameters).first(DepthCamera::kWithoutPolynomial)) {
     table.add({.name = parameter_name("camera", info.name)});
   }
   for (const ParameterInfo& info : std::span(PinholeCamera::kParameters).first(kIntrinsics)) {
@@ -89,6 +90,23 @@ Pose<double> tip_pose(const BasicProblem<S>& problem, std::size_t sensor, const 
   return {pose.r, pose.t};
 }
 
+/// The depth z1 with z = z1 (1 + z_quadratic z1 + p), where p is the rest of the polynomial.
+inline double depth_before_polynomial(double z, double x, double y,
+                                      const OracleValues<double>& value) {
+  const double p = value("camera_z_x") * x + value("camera_z_y") * y +
+                   value("camera_z_xx") * x * x + value("camera_z_xy") * x * y +
+                   value("camera_z_yy") * y * y;
+  return 2.0 * z /
+         (1.0 + p + std::sqrt((1.0 + p) * (1.0 + p) + 4.0 * value("camera_z_quadratic") * z));
+}
+
+/// Adds the coefficients of the depth camera's polynomial to a table of the scene.
+inline void add_depth_polynomial(ParameterTable& table) {
+  for (const ParameterInfo& info : kDepthPolynomial) {
+    table.add({.name = parameter_name("camera", info.name), .unit = std::string(info.unit)});
+  }
+}
+
 /// Samples that fit the problem's robot exactly at the given values: joint positions are random,
 /// each feature is a point in front of the camera, as camera and arm must then have seen it.
 template <class S>
@@ -118,11 +136,13 @@ std::vector<Sample> exact_samples(const BasicProblem<S>& problem, std::span<cons
       const double z = depth(random);
       const Vector3<double> seen{side(random) * z, side(random) * z, z};  // braces: in this order
       // The raw pixel and depth that mean this point at these camera parameters.
-      const double z0 = z / (1.0 + value("camera_z_scaling")) - value("camera_z_offset");
       const double u =
           seen.x() / z * 550 * (1 + value("camera_fx")) + 320 * (1 + value("camera_cx"));
       const double v =
           seen.y() / z * 545 * (1 + value("camera_fy")) + 240 * (1 + value("camera_cy"));
+      const double x = (u - 320) / 550, y = (v - 240) / 545;
+      const double z1 = depth_before_polynomial(z, x, y, value);
+      const double z0 = z1 / (1.0 + value("camera_z_scaling")) - value("camera_z_offset");
       const Vector3<double> recorded((u - 320) * z0 / 550, (v - 240) * z0 / 545, z0);
       depth_camera.features.push_back({"camera_optical_frame", recorded});
       const Vector3<double> p_base = tip(1, "camera_optical_frame") * seen;

@@ -16,7 +16,8 @@ inline ParameterTable wide_table() {
   ParameterTable table = scene_table();
   table.add({.name = "finger"});
   for (auto axis : kFrameAxes) table.add({.name = parameter_name("wrist_mimic", axis)});
-  for (const ParameterInfo& info : DepthCamera::kParameters) {
+  for (const ParameterInfo& info :
+       std::span(DepthCamera::kParameters).first(DepthCamera::kWithoutPolynomial)) {
     table.add({.name = parameter_name("second", info.name)});
   }
   return table;

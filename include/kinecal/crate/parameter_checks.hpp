@@ -59,7 +59,7 @@ struct PartsOfParameter {
   static_assert(
       kOwnerDeclaresThem,
       "kinecal: the sensor or block in this parameter does not declare it; a Camera3d or Camera2d "
-      "has intrinsics, a Camera3d also has depth offset and scaling, others what their "
+      "has intrinsics, a Camera3d also has depth offset, scaling and polynomial, others what their "
       "kParameters name");
 };
 template <class Parameter, bool kFreesSome = false>

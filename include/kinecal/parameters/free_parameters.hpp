@@ -6,7 +6,8 @@
 //   VirtualFrame<"checkerboard">              six, of a frame that is not in the URDF
 //   CameraIntrinsics<"camera">                four: fx fy cx cy
 //   DepthCorrection<"camera">                 two: z_offset z_scaling
-//   DepthIntrinsics<"camera">                 all six of a depth camera
+//   DepthIntrinsics<"camera">                 these six of a depth camera
+//   DepthPolynomial<"camera">                 six more: z_quadratic z_x z_y z_xx z_xy z_yy
 //   JointModelParameters<"elbow", "gear_ratio">   what a joint model declares
 //   OwnJointModel<"elbow", Worm>              all that a joint model of your own declares
 //   SensorParameters<"wire", "scale">         what a sensor declares
@@ -182,6 +183,11 @@ struct CameraIntrinsics : SensorParameters<Camera, "fx", "fy", "cx", "cy"> {};
 /// Depth correction of a depth camera: z_offset (metres) and z_scaling (relative).
 template <FixedString Camera>
 struct DepthCorrection : SensorParameters<Camera, "z_offset", "z_scaling"> {};
+
+/// How a depth camera bends depth: z_quadratic (1/m), z_x z_y z_xx z_xy z_yy (relative).
+template <FixedString Camera>
+struct DepthPolynomial
+    : SensorParameters<Camera, "z_quadratic", "z_x", "z_y", "z_xx", "z_xy", "z_yy"> {};
 
 /// Intrinsics and depth correction of a depth camera: six numbers.
 template <FixedString Camera>

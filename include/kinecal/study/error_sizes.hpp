@@ -18,6 +18,7 @@ struct ErrorSizes {
   double intrinsics = 0.01;  ///< of focal lengths and principal point, relative
   double z_offset = 0.005;   ///< of depth, metres
   double z_scaling = 0.01;   ///< of depth, relative
+  double z_bend = 0.005;     ///< of the further terms of depth, 1/m or relative
 };
 
 /// The size of a parameter's error, by its name; zero for an unknown kind.

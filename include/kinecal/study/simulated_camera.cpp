@@ -135,11 +135,21 @@ bool is_at_an_edge(const DepthImage& depth, int u, int v) {
   return false;
 }
 
+/// The depth z1 of which the polynomial makes a true depth.  z = z1 (1 + z_quadratic z1 + p)
+double before_polynomial(const SimulatedCamera& camera, const Vector3<double>& ray, double z) {
+  const auto& c = camera.errors;
+  const double x = ray.x(), y = ray.y();
+  const double one_and_p = 1.0 + c[7] * x + c[8] * y + c[9] * x * x + c[10] * x * y + c[11] * y * y;
+  return 2.0 * z / (one_and_p + std::sqrt(one_and_p * one_and_p + 4.0 * c[6] * z));
+}
+
 /// The depth that the driver reports, metres; NaN outside of its range.
 /// @param z       true depth, metres
+/// @param ray     of the pixel, as reported
 /// @param normal  random number
-double reported_depth(const SimulatedCamera& camera, double focal_length, double z, double normal) {
-  double raw = z / (1.0 + camera.errors[5]) - camera.errors[4];
+double reported_depth(const SimulatedCamera& camera, double focal_length, double z,
+                      const Vector3<double>& ray, double normal) {
+  double raw = before_polynomial(camera, ray, z) / (1.0 + camera.errors[5]) - camera.errors[4];
   raw += camera.depth_noise * z * z * normal;
   if (camera.disparity_step > 0.0 && raw > 0.0) {
     const double per_step = focal_length * camera.baseline / camera.disparity_step;
@@ -161,8 +171,9 @@ PointCloud measured_points(const SimulatedCamera& camera, const SimulatedLens& l
       if (camera.has_holes && (picture.answer(u, v) == 0 || is_at_an_edge(picture.depth, u, v))) {
         continue;
       }
-      const double raw = reported_depth(camera, focal_length, z, normal[u]);
-      if (!std::isnan(raw)) points(u, v) = (lens.reported_ray(u, v) * raw).cast<float>();
+      const Vector3<double> ray = lens.reported_ray(u, v);
+      const double raw = reported_depth(camera, focal_length, z, ray, normal[u]);
+      if (!std::isnan(raw)) points(u, v) = (ray * raw).cast<float>();
     }
   }
   return points;

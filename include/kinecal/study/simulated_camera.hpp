@@ -1,7 +1,7 @@
 // A simulated camera: its true lens, which differs from its camera_info, and its imaging errors.
 //
-//   depth, as the driver reports it: z / (1 + z_scaling) - z_offset + noise z^2, in steps of
-//   disparity
+//   depth, as the driver reports it: z1 / (1 + z_scaling) - z_offset + noise z^2, in steps of
+//   disparity; z1 is the depth z before the polynomial of sensors/depth_polynomial.hpp
 //
 // The parameters are those of camera2d and camera3d, which correct for them.
 // SPDX-License-Identifier: Apache-2.0
@@ -21,15 +21,16 @@ namespace kinecal {
 [[nodiscard]] CameraInfo typical_camera_info();
 
 /// The errors of a camera, as parameters of camera2d and camera3d name them.
-inline constexpr std::array<std::string_view, 6> kCameraErrors = {"fx", "fy",       "cx",
-                                                                  "cy", "z_offset", "z_scaling"};
+inline constexpr std::array<std::string_view, 12> kCameraErrors = {
+    "fx",          "fy",  "cx",  "cy",   "z_offset", "z_scaling",
+    "z_quadratic", "z_x", "z_y", "z_xx", "z_xy",     "z_yy"};
 
 /// A camera.
 struct SimulatedCamera {
   std::string frame = "camera_optical_frame";  ///< its optical frame, a link
   CameraInfo info = typical_camera_info();     ///< as its driver reports it
   ImageKind image = ImageKind::automatic;      ///< the kind of its images
-  std::array<double, 6> errors{};              ///< fx fy cx cy z_offset z_scaling of the lens
+  std::array<double, 12> errors{};             ///< of the lens and its depth: kCameraErrors
   double blur = 0.6;                           ///< standard deviation of the point spread, pixels
   double exposure = 1.0;                       ///< factor of all brightness
   double noise = 1.5;           ///< standard deviation of a pixel's brightness, of 255

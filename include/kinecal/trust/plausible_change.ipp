@@ -78,7 +78,8 @@ struct Limits {
     return {kNever, kNever};
   }
   if (p.unit == "m") return {0.1, kNever};
-  if (p.unit == "s") return {0.2, 1.0};  // the lag of a sensor
+  if (p.unit == "s") return {0.2, 1.0};                      // the lag of a sensor
+  if (p.name.ends_with("_z_quadratic")) return {0.09, 0.3};  // of depth, at a metre
   return p.unit == "1" ? Limits{0.09, 0.3} : Limits{kNever, kNever};
 }
 

@@ -14,6 +14,7 @@ double useful_deviation(const Parameter& parameter) {
   if (parameter.unit == "rad") return 5.0 * std::numbers::pi / 180.0;
   if (parameter.unit == "m") return 0.02;
   if (parameter.unit == "1") return 0.05;
+  if (parameter.name.ends_with("_z_quadratic")) return 0.05;  // of depth, at a metre
   return parameter.unit == "px" ? 20.0 : std::numeric_limits<double>::infinity();
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -12,10 +13,12 @@
 
 #include "kinecal/files/cameras/camera_fields.ipp"
 #include "kinecal/files/cameras/camera_info.hpp"
+#include "kinecal/files/results/depth_file.hpp"
 #include "kinecal/files/results/result_text.ipp"
 #include "kinecal/files/results/transform_files.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/sensors/depth_camera.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal {
@@ -28,6 +31,7 @@ struct CalibratedCamera {
   Mount mount;
   CameraInfo info;
   bool measures_depth = false;
+  std::optional<CalibratedDepth> depth = {};  ///< of a camera3d
 };
 
 [[nodiscard]] std::vector<CalibratedCamera> calibrated_cameras(const Calibration& calibration,
@@ -48,11 +52,24 @@ struct CalibratedCamera {
             mounted.own_values({all.data(), static_cast<std::size_t>(all.size())});
         cameras.push_back({mount, mounted.sensor().calibrated(*seen->camera, own),
                            measures_depth(mounted.sensor())});
+        if (mounted.sensor().type() == DepthCamera::kType) {
+          cameras.back().depth =
+              calibrated_depth(mounted, *seen, {all.data(), static_cast<std::size_t>(all.size())});
+        }
         break;
       }
     }
   }
   return cameras;
+}
+
+/// True if some step freed a coefficient of a camera's polynomial.
+[[nodiscard]] bool frees_bend(const CalibratedDepth& depth, const CalibrationResult& result) {
+  return std::any_of(kDepthPolynomial.begin(), kDepthPolynomial.end(), [&](const auto& bend) {
+    const int p = depth.parameters.at(std::string(bend.name));
+    const auto& freed = result.calibrated;
+    return p >= 0 && std::find(freed.begin(), freed.end(), p) != freed.end();
+  });
 }
 
 }  // namespace
@@ -97,6 +114,9 @@ std::string impossible_camera(const Calibration& calibration, const ParameterTab
       diagnostics.error(
           place, fmt::format("depth scale must be positive, is {}", 1.0 + table[scaling].value));
     }
+    if (!camera.depth) continue;
+    const std::string why = impossible_depth(*camera.depth, camera.mount.name, samples);
+    if (!why.empty()) diagnostics.error(place, why);
   }
   return diagnostics.errors.empty() ? "" : diagnostics.errors.front();
 }
@@ -128,6 +148,11 @@ std::vector<OutputFile> result_files(const Robot& robot, const std::string& urdf
     if (camera.measures_depth) {
       files.push_back({detail::camera_file("depth", name, options.date), content});
       refer("depth_info", name, files.back().name);
+    }
+    if (camera.depth && (camera.depth->bends() || detail::frees_bend(*camera.depth, result))) {
+      files.push_back({detail::camera_file("depth_correction", name, options.date),
+                       depth_correction_yaml(*camera.depth, name, options.deviations, samples)});
+      refer("depth_correction", name, files.back().name);
     }
     files.push_back({detail::camera_file("rgb", name, options.date), content});
     refer("rgb_info", name, files.back().name);

@@ -50,8 +50,15 @@ struct ModelChain {
   return joints;
 }
 
-/// The parameters of a sensor that may be wrong: of a camera of rectified images, not those of its lens.
-[[nodiscard]] inline std::vector<std::string> sensor_parameters(const ModelConfig& model) {
+[[nodiscard]] inline bool is_free(const StepConfig& step, const std::string& name) {
+  const std::vector<FreeParamConfig> all = free_parameters(step);
+  return std::any_of(all.begin(), all.end(), [&](const auto& free) { return free.name == name; });
+}
+
+/// The parameters of a sensor that may be wrong: of a camera of rectified images, not those of its lens; of
+/// the polynomial of a depth camera, those that the step frees.
+[[nodiscard]] inline std::vector<std::string> sensor_parameters(const StepConfig& step,
+                                                                const ModelConfig& model) {
   const SensorEntry* entry = registry().sensor(model.type);
   if (entry == nullptr) return {};
   const std::shared_ptr<const AnySensor> sensor = sensor_of(model);
@@ -59,14 +66,12 @@ struct ModelChain {
   std::vector<std::string> names;
   for (const ParameterInfo& info : sensor->parameters()) {
     const bool is_of_lens = entry->has_lens && names.size() >= kIntrinsics;
-    if (!is_of_lens || has_lens) names.push_back(parameter_name(model.param_name, info.name));
+    const std::string name = parameter_name(model.param_name, info.name);
+    const bool is_bend = model.type == DepthCamera::kType &&
+                         names.size() >= DepthCamera::kWithoutPolynomial && !is_free(step, name);
+    if (!is_bend && (!is_of_lens || has_lens)) names.push_back(name);
   }
   return names;
-}
-
-[[nodiscard]] inline bool is_free(const StepConfig& step, const std::string& name) {
-  const std::vector<FreeParamConfig> all = free_parameters(step);
-  return std::any_of(all.begin(), all.end(), [&](const auto& free) { return free.name == name; });
 }
 
 /// True for a frame that is free from the beginning: it is not in the URDF, or no motor moves it.

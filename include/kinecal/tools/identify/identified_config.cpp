@@ -27,7 +27,7 @@ Config with_all_candidates(const Config& config, const Robot& robot,
     for (const std::string& name : of_joint.parameters) free(name);
   }
   for (const ModelConfig& model : step.models) {
-    for (const std::string& name : detail::sensor_parameters(model)) free(name);
+    for (const std::string& name : detail::sensor_parameters(step, model)) free(name);
   }
   for (FreeFrameConfig& frame : step.free_frames) frame.place = step.place;
   return all;
@@ -80,7 +80,7 @@ IdentifyTask identify_task(const Config& config, const AnyProblem& problem,
       detail::moving_joints(detail::model_chains(config, robot), robot);
   for (const Joint* joint : joints) add(detail::kZero, joint->name, {joint->name});
   for (const ModelConfig& model : step.models) {
-    for (const std::string& name : detail::sensor_parameters(model)) {
+    for (const std::string& name : detail::sensor_parameters(step, model)) {
       add(detail::kOfSensor, name, {name});
     }
   }

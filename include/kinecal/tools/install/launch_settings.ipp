@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "kinecal/files/yaml/yaml_text.hpp"
+#include "kinecal/sensors/depth_polynomial.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/tools/install/dates.ipp"
 #include "kinecal/tools/install/launch_names.hpp"
@@ -131,6 +132,15 @@ class LaunchSettings {
                  whole_millimetres(offset, result.values.name));
     settings.add(kParam, camera.prefix, launch_key::kDepthScaling, "value",
                  number_to_yaml(scaling));
+    const bool bends = std::any_of(kDepthPolynomial.begin(), kDepthPolynomial.end(), [&](auto& of) {
+      return depth_parameter(result, camera, "_" + std::string(of.name)) != 0.0;
+    });
+    if (bends) {
+      diagnostics.warnings.push_back(
+          "camera '" + camera.name +
+          "': its driver gets offset and scale of the depth, not the rest of the correction; apply "
+          "the file depth_correction of the result with true_depth.hpp");
+    }
   }
   return settings.take();
 }
