@@ -26,6 +26,7 @@
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/files/urdf/velocity_limits.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/tools/cameras/next_photographs.hpp"
 #include "kinecal/tools/detect/detect.hpp"
 #include "output_file.hpp"
 #include "pose_file.hpp"
@@ -255,6 +256,7 @@ struct Session {
   std::size_t timed = 0;                   ///< poses that were not skipped
   std::vector<Thumbnail> thumbnails = {};  ///< of what finders looked at
   std::set<std::string> said = {};         ///< notes of finders
+  std::vector<std::string> advice = {};    ///< what was printed last: see advise()
 
   /// Prints, writes and follows what came of a pose.
   void take(CapturedPose captured) {
@@ -276,6 +278,15 @@ struct Session {
     for (const Sample& sample : captured.samples) {
       if (follower) follower->add(sample, poses_left(poses, samples));
     }
+    advise();
+  }
+
+  /// Prints what all samples lack for the lenses of cameras, where that has changed.
+  void advise() {
+    std::vector<std::string> now = next_photographs(samples);
+    if (now == advice) return;
+    for (const std::string& line : now) say("  {}\n", line);
+    advice = std::move(now);
   }
 
   /// "; 6 min left": the poses that are left take the mean time of those so far.  The first one alone

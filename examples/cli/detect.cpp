@@ -25,6 +25,7 @@
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
+#include "kinecal/tools/cameras/next_photographs.hpp"
 #include "kinecal/tools/detect/detect_all.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
@@ -320,6 +321,7 @@ int detect(const DetectOptions& options) {
       counted(found.features, "feature"), count - found.used, count_of_targets(samples));
   if (!sheets.empty()) say("wrote {}\n", sheets);
   if (options.every) print_speed(samples, task.robot);
+  for (const std::string& advice : next_photographs(samples)) say("{}\n", advice);
   return kDone;
 }
 

@@ -7,6 +7,7 @@
 #include "kinecal/text/first_names.hpp"
 #include "kinecal/text/fixed_string.hpp"
 #include "kinecal/text/frame_name.hpp"
+#include "kinecal/text/image_region.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/text/reading.hpp"

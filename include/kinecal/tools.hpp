@@ -6,6 +6,7 @@
 #include "kinecal/tools/cameras/find_lenses.hpp"
 #include "kinecal/tools/cameras/initial_cameras.hpp"
 #include "kinecal/tools/cameras/lens_start.hpp"
+#include "kinecal/tools/cameras/next_photographs.hpp"
 #include "kinecal/tools/cameras/prepare_cameras.hpp"
 #include "kinecal/tools/cameras/single_camera.hpp"
 #include "kinecal/tools/cameras/start_cameras.hpp"

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/report/findings.hpp"
+#include "kinecal/text/image_region.hpp"
 #include "kinecal/text/reading.hpp"
 
 namespace kinecal::detail {
@@ -54,12 +56,27 @@ namespace kinecal::detail {
       reading(pixels.alike, "px"), pixels.region, pixels.there[0], pixels.there[1]);
 }
 
+/// "no feature at the top of its image: hold the target there"; empty if features are everywhere.
+[[nodiscard]] inline std::string empty_regions_text(const ProjectionMap& map) {
+  std::array<bool, kImageRegions> empty;
+  empty.fill(true);
+  for (const KnownPixel& cell : map.cells) {
+    if (cell.features == 0) continue;
+    empty[image_region((cell.pixel[0] - map.low[0]) / (map.high[0] - map.low[0]),
+                       (cell.pixel[1] - map.low[1]) / (map.high[1] - map.low[1]))] = false;
+  }
+  const std::string regions = image_regions_text(empty);
+  return regions.empty() ? ""
+                         : "  no feature at " + regions + " of its image: hold the target there\n";
+}
+
 [[nodiscard]] inline std::string cameras_text(const Findings& findings) {
   std::string text;
   if (findings.assessments.empty()) return text;
   const Assessment& last = findings.assessments.back();
   for (std::size_t i = 0; i < last.maps.size(); ++i) {
-    text += camera_text(last.maps[i]) + place_text(last.alike[i]);
+    text +=
+        camera_text(last.maps[i]) + place_text(last.alike[i]) + empty_regions_text(last.maps[i]);
   }
   return text;
 }

@@ -9,6 +9,8 @@
 #include <random>
 #include <utility>
 
+#include "kinecal/text/image_region.hpp"
+
 namespace kinecal {
 
 namespace detail {
@@ -58,7 +60,9 @@ class ImageCells {
       there.count += at->second.count;
     }
     found.there = {there.sum.x() / there.count, there.sum.y() / there.count};
-    found.region = region_of(cell.pixel);
+    found.region = kImageRegionNames[image_region(
+        (cell.pixel[0] - map_.low[0]) / (map_.high[0] - map_.low[0]),
+        (cell.pixel[1] - map_.low[1]) / (map_.high[1] - map_.low[1]))];
     return found;
   }
 
@@ -110,18 +114,6 @@ class ImageCells {
     }
     return (1.0 + as_large) / (1.0 + kTrials);
   }
-  [[nodiscard]] std::string region_of(const std::array<double, 2>& pixel) const {
-    const auto third = [&](std::size_t i) {
-      const double share = (pixel[i] - map_.low[i]) / (map_.high[i] - map_.low[i]);
-      return static_cast<std::size_t>(std::clamp(3.0 * share, 0.0, 2.9));
-    };
-    static constexpr std::array<std::array<const char*, 3>, 3> kNames = {
-        {{"upper left", "top", "upper right"},
-         {"left", "middle", "right"},
-         {"lower left", "bottom", "lower right"}}};
-    return kNames[third(1)][third(0)];
-  }
-
   const ProjectionMap& map_;
   std::map<int, std::map<std::ptrdiff_t, CellSum>> views_;
   double squares_ = 0.0, count_ = 0.0;
