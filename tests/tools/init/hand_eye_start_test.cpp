@@ -40,7 +40,7 @@ double calibrated_error(bool on_hand, int count, std::uint64_t seed) {
 /// Noise of 1 mm and 5 mrad moves the camera by a few millimetres, a wrong minimum by decimetres.
 TEST(HandEyeStart, IsFoundFromFourToTwelvePoses) {
   constexpr double kFound = 0.05;  // metres; four poses may turn little about a second axis
-  const int runs = test::repetitions(200, 20);
+  const int runs = test::repetitions_of_study(200, 20);
   for (const bool on_hand : {true, false}) {
     int found = 0;
     double worst = 0.0;
