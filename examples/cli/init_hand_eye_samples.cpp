@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -19,6 +20,7 @@
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/init/hand_eye.hpp"
+#include "kinecal/tools/init/hand_eye_fit.hpp"
 #include "output_file.hpp"
 #include "terminal.hpp"
 
@@ -51,6 +53,23 @@ bool is_camera_on_hand(const InitOptions& options) {
   return on_hand;
 }
 
+/// A doubt if the poses fit a camera in the other place much better.
+void doubt_the_target(const InitOptions& options, bool on_hand, std::span<const Sample> samples,
+                      Diagnostics& diagnostics) {
+  constexpr double kTimes = 3.0, kLeast = 5e-3;  // metres
+  const double given = fit_hand_eye(samples, on_hand).difference,
+               other = fit_hand_eye(samples, !on_hand).difference;
+  if (!(given > kLeast && given > kTimes * other)) return;
+  const auto words = [](bool hand) { return hand ? "on the hand" : "beside the robot"; };
+  diagnostics.doubt(
+      {options.poses, 0},
+      fmt::format("the poses fit a camera {} (to {:.1f} mm), not one {} ({:.1f} mm): is "
+                  "--target {} meant{}?",
+                  words(!on_hand), 1e3 * other, words(on_hand), 1e3 * given,
+                  on_hand ? "marker" : "world_marker",
+                  options.inverse ? ", or the file without --inverse" : ""));
+}
+
 }  // namespace
 
 int init_hand_eye_samples(const InitOptions& options) {
@@ -65,13 +84,14 @@ int init_hand_eye_samples(const InitOptions& options) {
 
   Diagnostics diagnostics;
   std::vector<Sample> samples = read_hand_eye_samples(options.poses, on_hand, diagnostics);
-  print_or_throw(diagnostics);
   if (options.inverse) {
     for (Sample& sample : samples) {
       Pose<double>& pose = sample.poses.at(HandEyeNames::kFlangeJoint);
       pose = pose.inverse();
     }
   }
+  if (diagnostics.errors.empty()) doubt_the_target(options, on_hand, samples, diagnostics);
+  print_or_throw(diagnostics);
   std::ostringstream text;
   write_samples(text, samples);
   write_text_file(urdf, hand_eye_urdf(on_hand));

@@ -16,6 +16,7 @@ using test::FlangeTurns;
 using test::HandEyePoses;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class HandEyeSamplesProgram : public test::ProgramTest {
  protected:
@@ -48,6 +49,17 @@ TEST_F(HandEyeSamplesProgram, OfMoveItAreCalibratedWithoutAGuess) {
     EXPECT_THAT(read("calibrated/camera_joint.launch.py"),
                 HasSubstr(on_hand ? "\"--frame-id\",\n                \"flange\""
                                   : "\"--frame-id\",\n                \"base_link\""));
+  }
+}
+
+TEST_F(HandEyeSamplesProgram, DoubtATargetThatTheyDoNotFit) {
+  for (const bool on_hand : {true, false}) {
+    write("samples.yaml", HandEyePoses(on_hand, 12, 8).moveit_text());
+    const std::string right = on_hand ? "world_marker" : "marker",
+                      wrong = on_hand ? "marker" : "world_marker";
+    const std::string init = "init --force --poses samples.yaml --target ";
+    EXPECT_THAT(kinecal(init + wrong).err, HasSubstr("is --target " + right + " meant?"));
+    EXPECT_THAT(kinecal(init + right).err, Not(HasSubstr("meant")));
   }
 }
 

@@ -128,6 +128,9 @@ TEST_F(HandEyeSamples, NeedBothPosesAndReadableYaml) {
       ElementsAre("3: sample 2: object_wrt_sensor is missing: each sample needs both poses"));
   EXPECT_THAT(errors("[]"), ElementsAre(HasSubstr("no samples")));
   EXPECT_THAT(errors("- [1, 2\n"), ElementsAre(HasSubstr("2:")));
+  std::string many;
+  for (int i = 0; i < 300; ++i) many += "- effector_wrt_world: [1]\n";
+  EXPECT_LE(errors(many).size(), 25u);
   EXPECT_THAT(errors("- effector_wrt_world\n"), ElementsAre(HasSubstr("not a map")));
 }
 

@@ -86,8 +86,13 @@ std::vector<Sample> read_hand_eye_samples(const std::string& path,
                                              kFlangePose, kObjectPose));
     return samples;
   }
+  constexpr std::size_t kMostErrors = 20;
   for (const YamlNode& element : list->items) {
     const SourceLocation place{path, element.line};
+    if (diagnostics.errors.size() > errors + kMostErrors) {
+      diagnostics.error(place, "too many errors; the rest of the file is not read");
+      return samples;
+    }
     const std::string subject = fmt::format("sample {}", samples.size() + 1);
     ConfigMap map(element, place, subject, diagnostics);
     if (!element.is_map()) map.error(place, "is " + describe_config(element) + ", not a map");
