@@ -90,9 +90,10 @@ struct InitOptions {
   std::string target_frame, tracker_frame;                  ///< the same
   std::vector<std::string> targets;
   std::vector<std::string> cameras;  ///< names of cameras alone, instead of a robot
-  std::string poses;                 ///< table of poses of the flange, instead of a URDF; or empty
-  std::string form;                  ///< of these poses; empty: by the names of columns
-  bool inverse = false;              ///< they are those of the base in the flange
+  std::string poses;     ///< table of poses of the flange, or samples of another program,
+                         ///< instead of a URDF; or empty
+  std::string form;      ///< of these poses; empty: by the names of columns
+  bool inverse = false;  ///< they are those of the base in the flange
   std::string corners, target_points;  ///< tables beside them; empty: photographs
   bool force = false;                  ///< replace a file
 };
@@ -100,6 +101,10 @@ struct InitOptions {
 /// Writes a URDF, columns.yaml, a configuration and, for photographs, capture.yaml from poses of a
 /// flange.
 int init_hand_eye(const InitOptions& options);
+
+/// Writes a URDF, a configuration and samples from the poses of a flange and of an object in the camera
+/// which another program of hand-eye calibration saved.
+int init_hand_eye_samples(const InitOptions& options);
 
 /// Writes the configuration and capture.yaml of a calibration of cameras alone.
 int init_cameras(const InitOptions& options);

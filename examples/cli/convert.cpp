@@ -14,6 +14,7 @@
 #include "kinecal/files/csv/read_csv_samples.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/pose_messages.hpp"
+#include "kinecal/files/recordings/read_recording.hpp"
 #include "kinecal/files/recordings/write_recording.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
@@ -38,7 +39,7 @@ Content read_yaml(const std::string& input, Diagnostics& diagnostics) {
   Diagnostics found;
   try {
     ProgressLine line;
-    content.samples = read_samples(input, found, 0, line.meter());
+    content.samples = read_as_recorded(input, found, 0, line.meter()).samples;
   } catch (const InputError& error) {
     found.errors.emplace_back(error.what());
   }

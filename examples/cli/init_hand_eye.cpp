@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/files/csv/read_csv_samples.hpp"
+#include "kinecal/files/poses/hand_eye_samples.hpp"
 #include "kinecal/files/poses/pose_table.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
@@ -67,6 +68,7 @@ InitAnswers answers_of(const InitTargetWord& word, const InitOptions& options) {
 }  // namespace
 
 int init_hand_eye(const InitOptions& options) {
+  if (is_hand_eye_samples(options.poses)) return init_hand_eye_samples(options);
   const InitTargetWord word = board_of(options);
   const InitAnswers answers = answers_of(word, options);
   const std::filesystem::path folder = folder_of(options.output);

@@ -260,11 +260,12 @@ void add_init(CLI::App& command, InitOptions& options) {
       command.add_option("--urdf", options.urdf, "the robot's URDF")->type_name("FILE");
   CLI::Option* poses =
       command
-          .add_option(
-              "--poses", options.poses,
-              "instead of a URDF: a table of the flange's poses, for a hand-eye calibration; "
-              "writes hand_eye.urdf and columns.yaml, too.  --target says where the camera "
-              "is: world_... on the hand, else beside the robot")
+          .add_option("--poses", options.poses,
+                      "instead of a URDF: a table of the flange's poses, or samples of MoveIt "
+                      "Calibration or "
+                      "easy_handeye2, for a hand-eye calibration; "
+                      "writes hand_eye.urdf and columns.yaml, too.  --target says where the camera "
+                      "is: world_... on the hand, else beside the robot")
           ->excludes(urdf)
           ->type_name("FILE");
   command

@@ -34,6 +34,8 @@
 #include "kinecal/files/messages/value.hpp"
 #include "kinecal/files/messages/view_message.hpp"
 #include "kinecal/files/natural_order.hpp"
+#include "kinecal/files/poses/hand_eye_names.hpp"
+#include "kinecal/files/poses/hand_eye_samples.hpp"
 #include "kinecal/files/poses/pose_numbers.hpp"
 #include "kinecal/files/poses/pose_table.hpp"
 #include "kinecal/files/poses/poses.hpp"

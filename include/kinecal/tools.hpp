@@ -31,6 +31,7 @@
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/determined_offsets.hpp"
 #include "kinecal/tools/init/hand_eye.hpp"
+#include "kinecal/tools/init/hand_eye_fit.hpp"
 #include "kinecal/tools/init/init_answers.hpp"
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "kinecal/tools/init/initial_config.hpp"

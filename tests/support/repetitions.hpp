@@ -27,6 +27,11 @@ inline int repetitions(int full, int few) {
   return kIsSlow ? std::min(few, full) : full;
 }
 
+/// The number of repetitions of a study: `few`, unless KINECAL_REPETITIONS asks for more, at most `full`.
+inline int repetitions_of_study(int full, int few) {
+  return std::getenv("KINECAL_REPETITIONS") != nullptr ? repetitions(full, few) : few;
+}
+
 /// The counts that chance allows.
 struct Band {
   int least = 0, most = 0;

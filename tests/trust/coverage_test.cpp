@@ -5,21 +5,14 @@
 #include <cmath>
 #include <functional>
 
+#include "support/interval_coverage.hpp"
 #include "support/repetitions.hpp"
 #include "support/simulated.hpp"
 
 namespace kinecal {
 namespace {
 
-using test::Simulated;
-
-/// Half the width of the 95 % interval in standard deviations: Student's t.
-/// Source: Abramowitz, Stegun, Handbook of Mathematical Functions, 26.7.5.
-double student(double freedom) {
-  const double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z;
-  return z + (z3 + z) / (4.0 * freedom) +
-         (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * freedom * freedom);
-}
+using test::Simulated, test::student;
 
 TEST(Student, IsThatOfTheTables) {
   EXPECT_NEAR(student(10.0), 2.228, 3e-3);

@@ -38,7 +38,7 @@ std::map<std::string, std::string> files(bool on_hand, bool has_poses = true) {
 
 TEST(TransformFiles, HaveThePoseOfTheCameraInEachForm) {
   const auto all = files(true);
-  ASSERT_EQ(all.size(), 5u);
+  ASSERT_EQ(all.size(), 7u);
   EXPECT_THAT(all.at("camera_joint.sh"),
               HasSubstr("ros2 run tf2_ros static_transform_publisher --x 0.5 --y 0.25 --z 0 "));
   EXPECT_THAT(all.at("camera_joint.sh"),
@@ -47,6 +47,9 @@ TEST(TransformFiles, HaveThePoseOfTheCameraInEachForm) {
   EXPECT_THAT(all.at("camera_joint.launch.py"), HasSubstr("\"my camera\"]"));
   EXPECT_THAT(all.at("camera_joint.txt"), HasSubstr("0 0 0 1\n"));
   EXPECT_THAT(all.at("camera_joint.txt"), testing::StartsWith("-1 "));
+  EXPECT_THAT(all.at("camera_joint.launch"), HasSubstr("flange 'my camera'\"/>"));
+  EXPECT_THAT(all.at("camera_joint.calib"), HasSubstr("calibration_type: eye_in_hand"));
+  EXPECT_THAT(files(false).at("camera_joint.calib"), HasSubstr("calibration_type: eye_on_base"));
   EXPECT_THAT(all.at("camera_joint.easy_handeye.yaml"), HasSubstr("eye_on_hand: true"));
   EXPECT_THAT(all.at("camera_joint.easy_handeye.yaml"), HasSubstr("robot_effector_frame: flange"));
   EXPECT_THAT(files(false).at("camera_joint.easy_handeye.yaml"), HasSubstr("eye_on_hand: false"));

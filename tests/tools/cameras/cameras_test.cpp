@@ -4,92 +4,22 @@
 
 #include <fstream>
 #include <map>
-#include <sstream>
 
-#include "kinecal/config/assemble.hpp"
-#include "kinecal/config/own_frames.hpp"
-#include "kinecal/config/read_config.hpp"
-#include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/sensors/lens.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
-#include "kinecal/solve/calibrate.hpp"
 #include "kinecal/study/seeded_random.hpp"
 #include "kinecal/tools/cameras/initial_cameras.hpp"
 #include "kinecal/tools/cameras/lens_start.hpp"
-#include "kinecal/tools/cameras/prepare_cameras.hpp"
+#include "support/cameras_alone.hpp"
 #include "support/data.hpp"
 
 namespace kinecal {
 namespace {
 
+using test::Cameras, test::cameras_config;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-/// A configuration of cameras that see a board with a pose of its own in each sample.
-/// @param lens    of each camera
-/// @param bent    the board may be bent
-std::string config_of(const std::vector<std::string>& cameras, const std::string& lens,
-                      const std::string& coefficients, bool bent = false) {
-  std::string models = std::string(" - {name: board, type: ") + (bent ? "board" : "chain3d") +
-                       ", frame: board}\n",
-              free, frames, blocks;
-  for (const std::string& camera : cameras) {
-    models += " - {name: " + camera + ", type: camera2d, frame: " + camera +
-              (lens.empty() ? "" : ", lens: " + lens) + "}\n";
-    std::istringstream names("fx fy cx cy " + coefficients);
-    for (std::string name; names >> name;) free += (free.empty() ? "" : ", ") + camera + "_" + name;
-    blocks += " - {name: " + camera +
-              "_corners, type: chain3d_to_camera2d, model_3d: board, model_2d: " + camera +
-              ", sigma: 1.0}\n";
-    if (camera != cameras.front()) {
-      frames += " - {name: " + camera +
-                "_joint, x: true, y: true, z: true, roll: true, pitch: true, yaw: true}\n";
-    }
-  }
-  if (bent) free += ", board_bend_x, board_bend_y";
-  return "base_link: " + cameras.front() + "\nper_sample: [board]\nmodels:\n" + models +
-         "free_params: [" + free + "]\n" + (frames.empty() ? "" : "free_frames:\n" + frames) +
-         "error_blocks:\n" + blocks;
-}
-
-/// A calibration of cameras as the program makes it.
-struct Cameras {
-  Cameras(const std::string& text, std::vector<Sample> recorded) : samples(std::move(recorded)) {
-    config = parse_config(text, "cameras.yaml", diagnostics);
-    if (!diagnostics.errors.empty()) return;
-    robot = parse_urdf(urdf_of_cameras(config), "cameras.urdf");
-    (void)prepare_cameras(robot, config, samples, diagnostics);
-    if (!diagnostics.errors.empty()) return;
-    calibration = assemble(config, robot, samples, diagnostics);
-    if (diagnostics.errors.empty()) result = calibrate(calibration);
-  }
-  [[nodiscard]] double cost() const { return result.steps.back().final_cost; }
-  [[nodiscard]] double value(const std::string& name) const {
-    return result.table[result.table.find(name)].value;
-  }
-  /// The camera_info that comes out.
-  [[nodiscard]] CameraInfo info(const std::string& camera) const {
-    const Eigen::VectorXd values = result.table.values();
-    for (const MountedSensor& sensor : calibration.steps.back().problem->sensors()) {
-      if (sensor.mount().name != camera) continue;
-      const auto seen = std::find_if(samples.begin(), samples.end(), [&](const Sample& sample) {
-        return sample.observation(camera) != nullptr;
-      });
-      return sensor.sensor().calibrated(
-          *seen->observation(camera)->camera,
-          sensor.own_values({values.data(), static_cast<std::size_t>(values.size())}));
-    }
-    return {};
-  }
-
-  Diagnostics diagnostics;
-  Config config;
-  Robot robot;
-  std::vector<Sample> samples;
-  Calibration calibration;
-  CalibrationResult result;
-};
 
 /// The corners of lens_mrcal, with nothing known of the camera but the size of its image.
 std::vector<Sample> overpass(const std::string& folder) {
@@ -124,8 +54,8 @@ TEST(CamerasAlone, AWideLensFromNothingButCorners) {
   const std::vector<Sample> samples = overpass(test::data_folder().string());
   ASSERT_EQ(samples.size(), 93U);
   const auto rms = [](double cost) { return std::sqrt(2.0 * cost / 9300.0); };
-  Cameras rational(config_of({"camera"}, "rational_polynomial", "k1 k2 p1 p2 k3 k4 k5 k6", true),
-                   samples);
+  Cameras rational(
+      cameras_config({"camera"}, "rational_polynomial", "k1 k2 p1 p2 k3 k4 k5 k6", true), samples);
   ASSERT_THAT(rational.diagnostics.errors, IsEmpty());
   EXPECT_NEAR(rms(rational.cost()), 0.773296, 1e-5);
   EXPECT_NEAR(rational.info("camera").k[0], 2073.8396, 0.05);
@@ -133,17 +63,19 @@ TEST(CamerasAlone, AWideLensFromNothingButCorners) {
   // w0 and w1 of the reference: deflections in the middle of a board of 0.693 m
   EXPECT_NEAR(rational.value("board_bend_x"), 8.0 * 0.00104705 / (0.693 * 0.693), 2e-4);
   EXPECT_NEAR(rational.value("board_bend_y"), -8.0 * 0.000517389 / (0.693 * 0.693), 2e-4);
-  Cameras fisheye(config_of({"camera"}, "equidistant", "k1 k2 k3 k4", true), samples);
+  Cameras fisheye(cameras_config({"camera"}, "equidistant", "k1 k2 k3 k4", true), samples);
   ASSERT_THAT(fisheye.diagnostics.errors, IsEmpty());
   EXPECT_NEAR(rms(fisheye.cost()), 0.824034, 1e-5);
-  Cameras flat(config_of({"camera"}, "rational_polynomial", "k1 k2 p1 p2 k3 k4 k5 k6"), samples);
+  Cameras flat(cameras_config({"camera"}, "rational_polynomial", "k1 k2 p1 p2 k3 k4 k5 k6"),
+               samples);
   EXPECT_NEAR(rms(flat.cost()), 1.159241, 1e-5);
 }
 
 /// Evidence prefers the rational lens, and says why not plumb_bob.
 TEST(CamerasAlone, TheLensIsFoundByEvidence) {
   KINECAL_NEEDS_DATA("lens_mrcal")
-  Cameras cameras(config_of({"camera"}, "auto", "", true), overpass(test::data_folder().string()));
+  Cameras cameras(cameras_config({"camera"}, "auto", "", true),
+                  overpass(test::data_folder().string()));
   ASSERT_THAT(cameras.diagnostics.errors, IsEmpty());
   EXPECT_EQ(cameras.config.steps.front().models.back().lens, "rational_polynomial");
   EXPECT_THAT(cameras.diagnostics.notes,
@@ -205,7 +137,7 @@ Rig two_fisheyes(double noise = 0.0) {
 /// The truth is found from pixels alone.
 TEST(CamerasAlone, ARigFromPixelsAlone) {
   const auto [left, right, samples] = two_fisheyes();
-  Cameras rig(config_of({"left", "right"}, "equidistant", "k1 k2 k3 k4"), samples);
+  Cameras rig(cameras_config({"left", "right"}, "equidistant", "k1 k2 k3 k4"), samples);
   ASSERT_THAT(rig.diagnostics.errors, IsEmpty());
   ASSERT_TRUE(rig.result.converged);
   EXPECT_LE(rig.cost(), 1e-9);
@@ -238,7 +170,7 @@ TEST(CamerasAlone, TheLensesOfARigAreFoundByEvidence) {
 }
 
 TEST(CamerasAlone, WhatCannotBeIsSaid) {
-  const std::string text = config_of({"camera"}, "equidistant", "k1");
+  const std::string text = cameras_config({"camera"}, "equidistant", "k1");
   const auto errors = [](const std::string& config, std::vector<Sample> samples) {
     return Cameras(config, std::move(samples)).diagnostics.errors;
   };

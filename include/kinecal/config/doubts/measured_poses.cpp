@@ -52,18 +52,18 @@ void check_measured_poses(const Config& config, const Robot& robot, std::span<co
     if (joint->type != JointType::floating || samples.size() < 2) continue;
     const PoseTurns turns = turns_of(samples, joint->name);
     if (turns.about < kLeast) {
-      diagnostics.warning(
+      diagnostics.doubt(
           place_of(samples, 0),
           fmt::format("the poses of '{}' do not turn (by {:.2g} deg): where a frame is on '{}' "
-                      "cannot be found; turn it about two axes between poses",
+                      "cannot be found; record poses that turn about two axes",
                       joint->name, turns.about / kDegree, joint->child));
     } else if (turns.others < kLeast) {
-      diagnostics.warning(
+      diagnostics.doubt(
           place_of(samples, 0),
           fmt::format(
               "the poses of '{}' all turn about one axis, ({:.2f}, {:.2f}, {:.2f}) in '{}': "
-              "where a frame is along this axis cannot be found; turn it about another "
-              "axis, too",
+              "where a frame is along this axis cannot be found; record poses that turn about a "
+              "second axis, too",
               joint->name, turns.axis.x(), turns.axis.y(), turns.axis.z(), joint->child));
     }
   }

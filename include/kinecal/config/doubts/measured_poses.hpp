@@ -11,7 +11,7 @@
 
 namespace kinecal::detail {
 
-/// Warning: the poses of a floating joint do not turn, or all turn about one axis: a frame on the
+/// Doubt: the poses of a floating joint do not turn, or all turn about one axis: a frame on the
 /// moving side then has places that no sample tells apart.
 /// Source: Tsai, Lenz, A New Technique for Fully Autonomous and Efficient 3D Robotics Hand/Eye
 /// Calibration, 1989: two rotations about axes that are not parallel.

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/files/poses/hand_eye_samples.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/yaml/config_map.ipp"
 #include "kinecal/files/yaml/yaml_document.hpp"
@@ -76,7 +77,7 @@ namespace {
 }  // namespace detail
 
 bool is_poses_yaml(const std::string& path) {
-  if (!detail::why_no_file(path).empty()) return false;
+  if (!detail::why_no_file(path).empty() || is_hand_eye_samples(path)) return false;
   std::ifstream file(path);
   bool is_first = true;
   for (std::string line; std::getline(file, line);) {

@@ -19,7 +19,8 @@ struct Recording {
   std::string urdf;  ///< the last /robot_description; empty if there is none
 };
 
-/// Reads YAML, a ROS 1 bag, MCAP or a ROS 2 bag, identified by content.  Sets Sample::joint_moves and,
+/// Reads YAML, samples of MoveIt Calibration or easy_handeye2, a ROS 1 bag, MCAP or a ROS 2 bag,
+/// identified by content.  Sets Sample::joint_moves and,
 /// where no velocity was recorded, Sample::joint_velocities: samples/joint_moves.hpp.
 /// @param diagnostics  receives every error, also if there are no samples
 /// @param threads      like read_samples()

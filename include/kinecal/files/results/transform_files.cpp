@@ -86,6 +86,19 @@ template <class Word>
       fmt::join(publisher_arguments(mount, word), ",\n                "));
 }
 
+/// The launch file of ROS 1, whose `args` are split as a shell does.
+[[nodiscard]] std::string ros1_launch_text(const CalibratedMount& mount) {
+  const Vector3<double>& t = mount.parent_T_child.translation;
+  const Eigen::Vector4d q = quaternion(mount.parent_T_child.rotation).normalized();
+  const std::string args =
+      fmt::format("{} {} {} {} {}", numbers_text(t), numbers_text(q.head<3>()), q(3),
+                  shell_word(mount.joint->parent), shell_word(mount.joint->child));
+  return fmt::format(
+      "<launch>\n  <node pkg=\"tf2_ros\" type=\"static_transform_publisher\" "
+      "name=\"kinecal_broadcaster\" args=\"{}\"/>\n</launch>\n",
+      xml_attribute_text(args, '"'));
+}
+
 [[nodiscard]] std::string matrix_text(const CalibratedMount& mount) {
   std::string text;
   const Pose<double>& pose = mount.parent_T_child;
@@ -104,6 +117,24 @@ template <class Word>
       "  tracking_base_frame: {}\n"
       "transformation:\n  x: {}\n  y: {}\n  z: {}\n  qx: {}\n  qy: {}\n  qz: {}\n  qw: {}\n",
       mount.on_hand, name_to_yaml(mount.floating->parent), name_to_yaml(mount.floating->child),
+      name_to_yaml(mount.joint->child), number_to_yaml(t.x()), number_to_yaml(t.y()),
+      number_to_yaml(t.z()), number_to_yaml(q(0)), number_to_yaml(q(1)), number_to_yaml(q(2)),
+      number_to_yaml(q(3)));
+}
+
+/// The calibration of easy_handeye2.
+[[nodiscard]] std::string easy_handeye2_text(const CalibratedMount& mount,
+                                             const std::string& name) {
+  const Eigen::Vector4d q = quaternion(mount.parent_T_child.rotation).normalized();
+  const Vector3<double>& t = mount.parent_T_child.translation;
+  return fmt::format(
+      "parameters:\n  name: {}\n  calibration_type: {}\n  robot_base_frame: {}\n"
+      "  robot_effector_frame: {}\n  tracking_base_frame: {}\n  tracking_marker_frame: ''\n"
+      "  freehand_robot_movement: true\n"
+      "transform:\n  translation:\n    x: {}\n    y: {}\n    z: {}\n"
+      "  rotation:\n    x: {}\n    y: {}\n    z: {}\n    w: {}\n",
+      name_to_yaml(name), mount.on_hand ? "eye_in_hand" : "eye_on_base",
+      name_to_yaml(mount.floating->parent), name_to_yaml(mount.floating->child),
       name_to_yaml(mount.joint->child), number_to_yaml(t.x()), number_to_yaml(t.y()),
       number_to_yaml(t.z()), number_to_yaml(q(0)), number_to_yaml(q(1)), number_to_yaml(q(2)),
       number_to_yaml(q(3)));
@@ -135,8 +166,10 @@ std::vector<OutputFile> transform_files(const Robot& robot, const ParameterTable
     files.push_back({stem + ".xml", detail::urdf_text_of(mount)});
     files.push_back({stem + ".sh", detail::shell_text(mount)});
     files.push_back({stem + ".launch.py", detail::launch_text(mount)});
+    files.push_back({stem + ".launch", detail::ros1_launch_text(mount)});
     files.push_back({stem + ".txt", detail::matrix_text(mount)});
     files.push_back({stem + ".easy_handeye.yaml", detail::easy_handeye_text(mount)});
+    files.push_back({stem + ".calib", detail::easy_handeye2_text(mount, stem)});
   }
   return files;
 }

@@ -3,8 +3,10 @@
 //   <joint>.xml          the joint of a URDF
 //   <joint>.sh           the call of tf2_ros static_transform_publisher
 //   <joint>.launch.py    the same as a launch file, as MoveIt Calibration writes it
+//   <joint>.launch       the same for ROS 1
 //   <joint>.txt          parent_T_child as a 4 x 4 matrix
 //   <joint>.easy_handeye.yaml    calibration file of easy_handeye
+//   <joint>.calib        calibration file of easy_handeye2
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

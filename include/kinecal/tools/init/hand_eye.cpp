@@ -37,6 +37,51 @@ std::string hand_eye_urdf(bool camera_on_hand) {
       camera_on_hand ? Names::kFlange : Names::kBase);
 }
 
+std::string hand_eye_pose_config(bool camera_on_hand) {
+  using Names = HandEyeNames;
+  return fmt::format(
+      R"(# Hand-eye calibration from poses of the flange and of an object in the camera.  'kinecal init' wrote
+# this first configuration.  Units are metres and radians.
+base_link: {base}
+max_num_iterations: 1000
+
+models:
+ # The camera: poses of the object in it.
+ - name: {camera}
+   type: chain6d
+   frame: {camera}
+ # What holds the object.
+ - name: {object}
+   type: chain6d
+   frame: {holder}
+
+free_frames:
+ # How the camera is mounted.
+ - {{name: {joint}, x: true, y: true, z: true, roll: true, pitch: true, yaw: true}}
+ # Where the object is in '{holder}'.
+ - {{name: {target}, x: true, y: true, z: true, roll: true, pitch: true, yaw: true}}
+
+free_frames_initial_values:
+ # Nobody needs to know it.
+ - {{name: {target}, x: 0.0, y: 0.0, z: 0.0, roll: 0.0, pitch: 0.0, yaw: 0.0}}
+
+error_blocks:
+ # Both see the same pose.  One over the accuracies of a pose of the object: 1 mm and 5 mrad are a guess,
+ # write yours.
+ - name: hand_eye
+   type: pose_to_pose
+   model_a: {camera}
+   model_b: {object}
+   translation_scale: 1000.0
+   rotation_scale: 200.0
+   loss: {{type: huber, scale: 3.0}}
+)",
+      fmt::arg("base", Names::kBase), fmt::arg("camera", Names::kCamera),
+      fmt::arg("object", Names::kObject), fmt::arg("joint", Names::kCameraJoint),
+      fmt::arg("target", Names::kTarget),
+      fmt::arg("holder", camera_on_hand ? Names::kBase : Names::kFlange));
+}
+
 std::string hand_eye_columns(const HandEyeTables& tables, const std::string& output_folder) {
   using namespace detail;
   const HandEyeTable poses(tables.poses);

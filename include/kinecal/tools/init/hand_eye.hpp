@@ -1,30 +1,24 @@
 // A robot of which only the poses of its flange are known: what stands in for its URDF, and what the
 // columns of its tables mean.
 //
-//   base_link --flange_joint, floating--> flange        the poses
-//   base_link or flange --camera_joint, fixed--> camera the camera beside the robot, or on its hand
+// Links and joints are in files/poses/hand_eye_names.hpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
 
 #include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/poses/hand_eye_names.hpp"
 
 namespace kinecal {
-
-/// The names in hand_eye_urdf().
-struct HandEyeNames {
-  static constexpr const char* kBase = "base_link";
-  static constexpr const char* kFlange = "flange";
-  static constexpr const char* kFlangeJoint = "flange_joint";
-  static constexpr const char* kCamera = "camera";  ///< its optical frame
-  static constexpr const char* kCameraJoint = "camera_joint";
-  static constexpr const char* kTarget = "target";  ///< the frame of the board
-};
 
 /// The URDF of a flange and a camera.
 /// @param camera_on_hand  on the flange; else beside the robot
 [[nodiscard]] std::string hand_eye_urdf(bool camera_on_hand);
+
+/// The configuration for samples that have poses of an object in the camera: read_hand_eye_samples().
+/// @param camera_on_hand  on the flange, and the object in the world; else the other way around
+[[nodiscard]] std::string hand_eye_pose_config(bool camera_on_hand);
 
 /// Tables of a hand-eye calibration.
 struct HandEyeTables {
