@@ -26,7 +26,27 @@ namespace kinecal::detail {
   return metres.empty() ? 0.0 : median_of(std::move(metres));
 }
 
-/// "Camera 'eye': +- 0.03 px where features are (0.05 mm at 0.8 m), 0.4 px at the worst place of its image".
+/// "fx 800.12 +- 0.05, fy 800.3 +- 0.05, cx ... px; k1 -0.2501 +- 0.0003": as camera files have them.
+[[nodiscard]] inline std::string numbers_text(const ProjectionMap& map) {
+  std::string text;
+  for (std::size_t i = 0; i < map.numbers.size(); ++i) {
+    const CameraNumber& number = map.numbers[i];
+    const bool pixels = number.name.size() == 2 && (number.name[0] == 'f' || number.name[0] == 'c');
+    if (!pixels && !number.deviation) continue;
+    text += i == 0 ? "" : !pixels && map.numbers[i - 1].name == "cy" ? " px; " : ", ";
+    text += number.name +
+            (pixels ? fmt::format(" {:.2f}", number.value) : fmt::format(" {:.5g}", number.value));
+    if (!number.deviation) continue;
+    const double known = *number.deviation;
+    text += !std::isfinite(known) ? " not determined"
+            : pixels              ? fmt::format(" +- {:.2f}", known)
+                                  : fmt::format(" +- {:.2g}", known);
+  }
+  const bool has_lens = text.find(';') != std::string::npos;
+  return text.empty() ? "" : "  " + text + (has_lens ? "" : " px") + "\n";
+}
+
+/// "Camera 'eye': a pixel is known to 0.03 px where features are (0.05 mm at 0.8 m), 0.4 px at the worst place of its image".
 [[nodiscard]] inline std::string camera_text(const ProjectionMap& map) {
   const auto [least, median, most] = map.deviations();
   std::string text =
@@ -38,7 +58,7 @@ namespace kinecal::detail {
   if (std::isfinite(most)) {
     text += fmt::format(", to {} at the worst place of its image", reading(most, "px"));
   }
-  text += "\n";
+  text += "\n" + numbers_text(map);
   if (map.halves) {
     text += fmt::format("  two halves of the samples differ by {}; the +- allow {}\n",
                         reading(map.halves->difference, "px"), reading(map.halves->allowed, "px"));

@@ -25,7 +25,13 @@ template <class Number>
               {"allowed", map.halves->allowed},
               {"chance", map.halves->chance}};
   }
+  Json numbers = Json::object();
+  for (const CameraNumber& number : map.numbers) {
+    numbers[number.name] = {{"value", number.value},
+                            {"sigma", number.deviation ? Json(*number.deviation) : Json()}};
+  }
   return {{"sensor", map.sensor},
+          {"numbers", numbers},
           {"low", map.low},
           {"high", map.high},
           {"columns", map.columns},

@@ -54,7 +54,7 @@ class CorrectedDepthCamera {
     const Q raw = m.z() + offset_, depth = raw * factor_;
     const Vector3<Q> ray(r(0, 0) * s + r(0, 1) * t + r(0, 2), r(1, 0) * s + r(1, 1) * t + r(1, 2),
                          r(2, 0) * s + r(2, 1) * t + r(2, 2));
-    if (bends_ || (!chosen.empty() && chosen.back() >= kPlain)) [[unlikely]] {
+    if (bends_ || (!chosen.empty() && chosen.back() >= static_cast<int>(kPlain))) [[unlikely]] {
       // with the recorded settings: (u - cx0) / fx0
       const Q x = -(m.x() * per_fx_ + s_by_cx_) / by_fx_,
               y = -(m.y() * per_fy_ + t_by_cy_) / by_fy_;

@@ -12,7 +12,7 @@
 namespace kinecal::detail {
 
 /// Leave-one-out influence of each sample, by down-dating: without its rows J_s the coordinates
-/// move by H^-1 J_s^T (1 - J_s H^-1 J_s^T)^-1 r_s.
+/// move by H^-1 J_s^T (1 - J_s H^-1 J_s^T)^-1 r_s = (H - J_s^T J_s)^-1 J_s^T r_s; the smaller of the two systems is solved.
 inline void set_influences(const LinearFit& fit, std::vector<CaptureError>& captures) {
   const Eigen::MatrixXd hessian = information(fit, fit.loss);
   const Eigen::MatrixXd inverse = Spectrum(hessian).pseudo_inverse();
@@ -29,9 +29,15 @@ inline void set_influences(const LinearFit& fit, std::vector<CaptureError>& capt
     const Eigen::VectorXd root = fit.loss.segment(first, size).cwiseSqrt();
     const Eigen::MatrixXd j = root.asDiagonal() * fit.jacobian.middleRows(first, size);
     const Eigen::VectorXd r = root.cwiseProduct(fit.residual.segment(first, size));
-    const Eigen::MatrixXd left =
-        Eigen::MatrixXd::Identity(size, size) - j * inverse * j.transpose();
-    const Eigen::VectorXd step = inverse * (j.transpose() * left.fullPivLu().solve(r));
+    Eigen::VectorXd step;
+    if (size > fit.size()) {
+      const Eigen::MatrixXd left = hessian - j.transpose() * j;
+      step = left.fullPivLu().solve(j.transpose() * r);
+    } else {
+      const Eigen::MatrixXd left =
+          Eigen::MatrixXd::Identity(size, size) - j * inverse * j.transpose();
+      step = inverse * (j.transpose() * left.fullPivLu().solve(r));
+    }
     captures[static_cast<std::size_t>(fit.blocks[b].sample)].influence =
         noise > 0.0 ? std::sqrt(std::max(0.0, step.dot(hessian * step)) / n) / noise : 0.0;
     b = end;

@@ -4,10 +4,15 @@
 
 #include <Eigen/Core>
 #include <Eigen/QR>
-#include <optional>
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "kinecal/problem/any_problem.hpp"
+#include "kinecal/trust/projection_map.hpp"
 
 namespace kinecal::detail {
 
@@ -41,6 +46,31 @@ class SolvedProjection {
       some(static_cast<Eigen::Index>(i)) = all[parameters_[i]];
     }
     return some;
+  }
+  /// What camera files have: fx fy cx cy in pixels, and coefficients of the lens.
+  /// @param deviations  of its free parameters
+  [[nodiscard]] std::vector<CameraNumber> numbers(std::span<const double> settings,
+                                                  std::span<const double> deviations) const {
+    static constexpr std::array<std::string_view, 4> kIntrinsicNames = {"fx", "fy", "cx", "cy"};
+    const std::span<const ParameterInfo> infos = camera_.sensor().parameters();
+    std::vector<CameraNumber> all;
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+      const auto intrinsic =
+          std::find(kIntrinsicNames.begin(), kIntrinsicNames.end(), infos[i].name);
+      const bool relative = intrinsic != kIntrinsicNames.end();
+      if (!relative && settings.size() != infos.size()) continue;  // not those of a lens
+      const double was =
+          settings[relative ? static_cast<std::size_t>(intrinsic - kIntrinsicNames.begin()) : i];
+      CameraNumber number{
+          std::string(infos[i].name), relative ? was * (1.0 + own_[i]) : was + own_[i], {}};
+      const auto free = std::find(parameters_.begin(), parameters_.end(), i);
+      if (free != parameters_.end()) {
+        number.deviation = (relative ? was : 1.0) *
+                           deviations[static_cast<std::size_t>(free - parameters_.begin())];
+      }
+      all.push_back(std::move(number));
+    }
+    return all;
   }
   /// The unit direction of a pixel; NaN where the lens sees nothing.
   [[nodiscard]] Vector3<double> direction(const Eigen::Vector2d& pixel) const {

@@ -50,16 +50,25 @@ struct HalvesApart {
   double chance = 1.0;      ///< probability of such a difference, or a larger one
 };
 
+/// A focal length, a coordinate of the principal point or a coefficient of the lens, as camera files have it.
+struct CameraNumber {
+  std::string name;    ///< "fx", "k1"
+  double value = 0.0;  ///< of fx fy cx cy: pixels
+  std::optional<double>
+      deviation;  ///< standard deviation, infinite if not determined; nullopt: held
+};
+
 /// How well a camera's projection is known.
 struct ProjectionMap {
   std::string sensor;  ///< the camera
   std::array<double, 2>
       low{};  ///< corner of the image, pixels; of what features cover if its size is unknown
-  std::array<double, 2> high{};       ///< the opposite corner
-  int columns = 0, rows = 0;          ///< cells
-  double distance = 0.0;              ///< of features from the camera, median, metres; 0: unknown
-  std::vector<KnownPixel> cells;      ///< row by row
-  std::optional<HalvesApart> halves;  ///< nullopt if there are too few poses
+  std::array<double, 2> high{};  ///< the opposite corner
+  int columns = 0, rows = 0;     ///< cells
+  double distance = 0.0;         ///< of features from the camera, median, metres; 0: unknown
+  std::vector<CameraNumber> numbers = {};  ///< of the first sample's camera_info, corrected
+  std::vector<KnownPixel> cells = {};      ///< row by row
+  std::optional<HalvesApart> halves = {};  ///< nullopt if there are too few poses
 
   /// The cell of a pixel; nullptr outside.
   [[nodiscard]] const KnownPixel* at(double u, double v) const;
