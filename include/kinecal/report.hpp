@@ -20,6 +20,7 @@
 #include "kinecal/report/charts/planes.hpp"
 #include "kinecal/report/charts/pose_curve.hpp"
 #include "kinecal/report/charts/position_spread.hpp"
+#include "kinecal/report/charts/projection.hpp"
 #include "kinecal/report/charts/radial.hpp"
 #include "kinecal/report/charts/samples.hpp"
 #include "kinecal/report/charts/scatter.hpp"
