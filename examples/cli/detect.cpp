@@ -10,22 +10,22 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "commands.hpp"
+#include "detected.hpp"
 #include "input.hpp"
 #include "kinecal/files/cameras/read_camera_file.hpp"
 #include "kinecal/files/recordings/write_recording.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
-#include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
-#include "kinecal/tools/cameras/next_photographs.hpp"
 #include "kinecal/tools/detect/detect_all.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
@@ -153,6 +153,25 @@ void add_recordings(const DetectOptions& options, DetectionInput& task, Diagnost
   }
 }
 
+/// The cameras of a rig: names after --frame; empty for one camera.
+/// @throws InputError  if options do not go together
+std::vector<std::string> cameras_of(const DetectOptions& options) {
+  std::vector<std::string> cameras;
+  if (options.images.empty() || options.frame.find(',') == std::string::npos) return cameras;
+  std::istringstream names(options.frame);
+  for (std::string name; std::getline(names, name, ',');) {
+    if (name.empty() || std::find(cameras.begin(), cameras.end(), name) != cameras.end()) {
+      throw InputError("--frame: '" + options.frame +
+                       "' names a camera twice, or has an empty name");
+    }
+    cameras.push_back(name);
+  }
+  if (!options.depth.empty() || !options.camera.empty() || !options.bags.empty()) {
+    throw InputError("--frame names several cameras: --camera, --depth and --bag go with one only");
+  }
+  return cameras;
+}
+
 DetectionInput read_task(const DetectOptions& options, Diagnostics& diagnostics) {
   DetectionInput task;
   task.frame = options.frame;
@@ -164,7 +183,13 @@ DetectionInput read_task(const DetectOptions& options, Diagnostics& diagnostics)
   }
   (void)make_finders(task, diagnostics.errors);
   if (!options.camera.empty()) task.camera = read_camera_argument(options.camera, diagnostics);
-  if (!options.images.empty()) {
+  const std::vector<std::string> cameras = cameras_of(options);
+  for (const std::string& camera : cameras) {
+    const std::string folder = options.images + "/" + camera;
+    task.rig.push_back(
+        {camera, list_images({folder, options.poses, options.columns, {}}, diagnostics)});
+  }
+  if (!options.images.empty() && cameras.empty()) {
     task.images =
         list_images({options.images, options.poses, options.columns, options.depth}, diagnostics);
   }
@@ -204,71 +229,6 @@ std::vector<Thumbnail> thumbnails_of(std::vector<Look> looks) {
     std::move(look.thumbnails.begin(), look.thumbnails.end(), std::back_inserter(all));
   }
   return all;
-}
-
-/// "; 'big' in 16, 'small' in 7" of several targets, by the frames of their features; else empty.
-std::string count_of_targets(const std::vector<Sample>& samples) {
-  std::map<std::string, std::size_t> counts;
-  for (const Sample& sample : samples) {
-    std::set<std::string> seen;
-    for (const Observation& observation : sample.observations) {
-      if (observation.camera) continue;  // in the frame of the camera
-      for (const Feature& feature : observation.features) seen.insert(feature.frame);
-    }
-    for (const std::string& frame : seen) ++counts[frame];
-  }
-  if (counts.size() < 2) return {};
-  std::string text;
-  for (const auto& [frame, count] : counts) {
-    text += fmt::format("{}'{}' in {}", text.empty() ? "; " : ", ", frame, count);
-  }
-  return text;
-}
-
-/// Joints that slide, if the robot is known.
-std::set<std::string> sliding_joints(const std::optional<Robot>& robot) {
-  std::set<std::string> sliding;
-  if (!robot) return sliding;
-  for (const Joint& joint : robot->joints()) {
-    if (joint.type == JointType::prismatic) sliding.insert(joint.name);
-  }
-  return sliding;
-}
-
-/// "camera_lag, board_lag": parameters of the sensors in samples, cameras first.
-std::string lags_of(const std::vector<Sample>& samples) {
-  std::set<std::pair<bool, std::string>> sensors;
-  for (const Sample& sample : samples) {
-    for (const Observation& observation : sample.observations) {
-      sensors.emplace(!observation.camera, observation.sensor);
-    }
-  }
-  std::string text;
-  for (const auto& [is_other, name] : sensors) text += (text.empty() ? "" : ", ") + name + "_lag";
-  return text;
-}
-
-/// How fast the robot moved, and what a lag does at that speed.
-void print_speed(const std::vector<Sample>& samples, const std::optional<Robot>& robot) {
-  const std::set<std::string> sliding = sliding_joints(robot);
-  std::vector<double> speeds;
-  for (const Sample& sample : samples) {
-    if (const auto speed = fastest_joint(sample, sliding)) speeds.push_back(*speed);
-  }
-  if (speeds.empty()) return;
-  std::sort(speeds.begin(), speeds.end());
-  const double median = speeds[speeds.size() / 2];
-  constexpr double kStands = 0.01;  // rad/s: a lag of 10 ms is 0.1 mrad
-  if (median < kStands) {
-    say("the robot stood in most views ({:.2g} rad/s in the median one): they say little about a "
-        "lag between joints and camera; record it while it moves at 0.1 to 0.3 rad/s\n",
-        median);
-    return;
-  }
-  say("the robot moved at {:.2f} rad/s in the median view, at most at {:.2f} rad/s; a lag of 1 ms "
-      "between joints and camera is {:.2g} mrad of the joints there: free that of what moves, {} "
-      "(kinecal identify does)\n",
-      median, speeds.back(), median, lags_of(samples));
 }
 
 void write(const DetectOptions& options, const std::vector<Sample>& samples) {
@@ -321,7 +281,7 @@ int detect(const DetectOptions& options) {
       counted(found.features, "feature"), count - found.used, count_of_targets(samples));
   if (!sheets.empty()) say("wrote {}\n", sheets);
   if (options.every) print_speed(samples, task.robot);
-  for (const std::string& advice : next_photographs(samples)) say("{}\n", advice);
+  print_lacks(samples, cameras_of(options));
   return kDone;
 }
 

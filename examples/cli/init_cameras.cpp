@@ -60,12 +60,13 @@ int init_cameras(const InitOptions& options) {
   const std::string calibrate =
       fmt::format("kinecal calibrate --config {} --samples samples.yaml --output calibrated",
                   shell_word(options.output));
+  say("next: kinecal detect {} --images images --frame {} -o samples.yaml && {}\n",
+      shell_word(capture), shell_word(fmt::format("{}", fmt::join(options.cameras, ","))),
+      calibrate);
   if (options.cameras.size() > 1) {
-    say("next: {}, with samples in which {} see the board\n", calibrate,
-        fmt::join(options.cameras, " and "));
-  } else {
-    say("next: kinecal detect {} --images images --frame {} -o samples.yaml && {}\n",
-        shell_word(capture), shell_word(options.cameras.front()), calibrate);
+    say("  photographs of each camera are in its folder: images/{}; those taken at once have the "
+        "same name\n",
+        fmt::join(options.cameras, ", images/"));
   }
   return kDone;
 }

@@ -605,7 +605,9 @@ void add_detect(CLI::App& command, DetectOptions& options) {
   command
       .add_option("--frame", options.frame,
                   "the camera's optical frame, as the configuration of the calibration has it; "
-                  "default: as recordings have it")
+                  "default: as recordings have it; of several cameras on a body, a,b: their "
+                  "photographs are in the folders a and b of --images, those taken at once under "
+                  "one name")
       ->type_name("NAME");
   command.add_option("-o,--output", options.output, "samples: .yaml, .bag or .mcap")
       ->required()

@@ -20,6 +20,7 @@
 #include "kinecal/tools/detect/joint_tracks.hpp"
 #include "kinecal/tools/detect/look.hpp"
 #include "kinecal/tools/detect/recorded_views.hpp"
+#include "kinecal/tools/detect/rig_views.hpp"
 #include "kinecal/tools/detect/still_view.hpp"
 #include "kinecal/tools/detect/view_topics.hpp"
 #include "kinecal/tools/identify/another_robot.hpp"

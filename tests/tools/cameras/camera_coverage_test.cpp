@@ -16,7 +16,7 @@ using test::assessment_of, test::of_frame;
 using test::Cameras, test::Chance, test::IntervalCoverage;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kNoise = 0.3;  // pixels
+constexpr double kPixelNoise = 0.3;  // pixels
 
 /// A fisheye whose image of 1280 x 960 pixels is `view` degrees wide.
 CameraInfo fisheye(double view, Chance& chance) {
@@ -51,7 +51,8 @@ Observation seen(const std::string& name, const CameraInfo& info, double view,
     const Vector3<double> p = camera_T_board * Vector3<double>(0.04 * (i % 9), 0.04 * (i / 9), 0.0);
     const double angle = std::atan2(std::hypot(p.x(), p.y()), p.z());
     const Eigen::Vector2d pixel = camera->predict(p, settings);
-    const double u = pixel.x() + kNoise * chance.normal(), v = pixel.y() + kNoise * chance.normal();
+    const double u = pixel.x() + kPixelNoise * chance.normal(),
+                 v = pixel.y() + kPixelNoise * chance.normal();
     const bool inside =
         angle < 0.55 * view * kDegree && u > 0.0 && u < 1280.0 && v > 0.0 && v < 960.0;
     if (inside) eye.features.push_back({name, {u, v, 0.0}, {}, {}, i});

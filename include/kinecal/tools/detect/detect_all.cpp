@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/tools/detect/detect_all.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <map>
 #include <utility>
 
 #include "kinecal/evaluation/parallel.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/tools/detect/rig_views.hpp"
 
 namespace kinecal {
 
@@ -66,6 +68,18 @@ DetectedSamples detect_all(const DetectionInput& input, const DetectionOptions& 
       found.looks.push_back(std::move(look));
     }
   };
+  std::vector<CameraLooks> rig;
+  for (const CameraImages& camera : input.rig) {
+    rig.push_back({camera.camera, look_at(camera.images, {}, camera.camera, how)});
+  }
+  for (const CameraLooks& camera : rig) {
+    found.used += static_cast<std::size_t>(
+        std::count_if(camera.looks.begin(), camera.looks.end(),
+                      [](const Look& look) { return !look.samples.empty(); }));
+  }
+  std::vector<Sample> of_rig = joined_views(rig);
+  std::move(of_rig.begin(), of_rig.end(), std::back_inserter(found.samples));
+  for (CameraLooks& camera : rig) add(std::move(camera.looks));
   if (!input.images.empty()) add(look_at(input.images, input.camera, input.frame, how));
   for (const RecordedViews& recording : input.recordings) add(look_at(recording, how));
   detail::add_finder_notes(found.looks, diagnostics);

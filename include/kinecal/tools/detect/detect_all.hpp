@@ -12,6 +12,12 @@
 
 namespace kinecal {
 
+/// Photographs of one of several cameras on a body.
+struct CameraImages {
+  std::string camera;  ///< its name and its frame
+  std::vector<PosedImage> images;
+};
+
 /// What is looked at, and by what.
 struct DetectionInput {
   CaptureConfig config;                   ///< its finders
@@ -19,6 +25,7 @@ struct DetectionInput {
   std::optional<CameraInfo> camera = {};  ///< of the photographs
   std::string frame = {};                 ///< of their camera
   std::vector<PosedImage> images = {};    ///< photographs
+  std::vector<CameraImages> rig = {};     ///< photographs of several cameras, see rig_views.hpp
   std::vector<RecordedViews> recordings = {};
   BoardLinks links = {};
 };
@@ -32,10 +39,11 @@ struct DetectionOptions {
 
 /// What was found.
 struct DetectedSamples {
-  std::vector<Look> looks;      ///< at each photograph and standstill, without their samples
-  std::vector<Sample> samples;  ///< in the order of the looks
-  std::size_t used = 0;         ///< looks that gave samples
-  std::size_t features = 0;     ///< in all of them
+  std::vector<Look> looks;  ///< at each photograph and standstill, without their samples
+  std::vector<Sample>
+      samples;  ///< in the order of the looks; of several cameras, of the photographs' names
+  std::size_t used = 0;      ///< looks that gave samples
+  std::size_t features = 0;  ///< in all of them
 };
 
 /// The finders of a configuration.
