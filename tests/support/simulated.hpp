@@ -29,10 +29,10 @@ struct Simulated {
   Config config;
   std::vector<Sample> exact;            ///< what the sensors see without noise
   std::map<std::string, double> truth;  ///< of parameters; zero of others
-  std::string noisy;                    ///< sensor of which the measurements have noise
+  std::string noisy = {};               ///< sensor of which the measurements have noise
   double sigma = 0.0;                   ///< of each of their coordinates
   int coordinates = 3;                  ///< 2: pixels
-  Place gripper, camera;                ///< what is asked: the pose of the one in the other
+  Place gripper = {}, camera = {};      ///< what is asked: the pose of the one in the other
   double outliers = 0.0;                ///< share of features whose noise is five times as large
 
   /// The samples with the noise of a seed.

@@ -43,8 +43,8 @@ struct CalibratedFetch {
 };
 
 CalibratedFetch calibrated(const TrueFetch& fetch, const CameraInfo& lens, bool with_lens) {
-  test::Simulated problem{"Fetch",       fetch.robot, test::config_of(config_text(with_lens)),
-                          fetch.samples, fetch.truth, {}};
+  test::Simulated problem{"Fetch", fetch.robot, test::config_of(config_text(with_lens)),
+                          fetch.samples, fetch.truth};
   for (Sample& sample : problem.exact) sample.observations[1].camera = lens;
   const Calibration calibration = problem.calibration(problem.exact);
   CalibratedFetch done{calibrate(calibration), lens};
