@@ -177,5 +177,36 @@ TEST(CompressedCost, FailsWhereTheCostIsNotFiniteAndKeepsNothingOfIt) {
   EXPECT_EQ(call.residual(), at_x);
 }
 
+/// Columns that nearly depend on others, as those of a lens do: the gradient stays that of the samples.
+TEST(EquivalentResidual, KeepsTheGradientWhereColumnsAreNearlyDependent) {
+  constexpr int kRows = 60, kColumns = 12;
+  std::srand(1);
+  for (int trial = 0; trial < 200; ++trial) {
+    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(kRows, kColumns);
+    for (int c = 4; c < kColumns; ++c) {
+      const double apart = std::pow(10.0, -3.0 - 0.5 * (c % 8));
+      jacobian.col(c) = jacobian.leftCols(4) * Eigen::VectorXd::Random(4) +
+                        apart * Eigen::VectorXd::Random(kRows);
+      jacobian.col(c) *= std::pow(10.0, c % 5);
+    }
+    const Eigen::VectorXd residual = Eigen::VectorXd::Random(kRows);
+    NormalEquations normal(kColumns);
+    normal.cost = 0.5 * residual.squaredNorm();
+    normal.gradient = jacobian.transpose() * residual;
+    normal.hessian = jacobian.transpose() * jacobian;
+    const detail::EquivalentResidual same(normal);
+    const Eigen::VectorXd scale = normal.hessian.diagonal().cwiseSqrt();
+    const Eigen::VectorXd lost =
+        (same.jacobian.transpose() * same.residual - normal.gradient).cwiseQuotient(scale);
+    constexpr double kRounding =
+        3e-6;  // a direction of curvature 1e-13 may be left out: sqrt of it, times |r|
+    EXPECT_LE(lost.cwiseAbs().maxCoeff(), kRounding) << trial;
+    const Eigen::MatrixXd apart = scale.cwiseInverse().asDiagonal() *
+                                  (same.jacobian.transpose() * same.jacobian - normal.hessian) *
+                                  scale.cwiseInverse().asDiagonal();
+    EXPECT_LE(apart.cwiseAbs().maxCoeff(), 1e-12) << trial;
+  }
+}
+
 }  // namespace
 }  // namespace kinecal

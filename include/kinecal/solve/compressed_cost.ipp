@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
+#include <cmath>
 
 #include "kinecal/solve/compressed_cost.hpp"
 
@@ -14,24 +14,23 @@ KINECAL_INLINE EquivalentResidual::EquivalentResidual(const NormalEquations& nor
       normal.hessian.diagonal().unaryExpr([](double h) { return h > 0.0 ? std::sqrt(h) : 1.0; });
   const Eigen::MatrixXd scaled =
       scale.cwiseInverse().asDiagonal() * normal.hessian * scale.cwiseInverse().asDiagonal();
-  const Eigen::LDLT<Eigen::MatrixXd> ldlt(scaled);
-  // H = D P^T L diag(d) L^T P D;  A = diag(sqrt d) L^T P D
-  // A^-T g = diag(1/sqrt d) L^-1 P D^-1 g
-  Eigen::MatrixXd rows = ldlt.matrixU();
-  for (Eigen::Index k = n - 1; k >= 0; --k) {  // times P
-    rows.col(k).swap(rows.col(ldlt.transpositionsP().coeff(k)));
-  }
-  Eigen::VectorXd projected =
-      ldlt.transpositionsP() * scale.cwiseInverse().cwiseProduct(normal.gradient);
-  ldlt.matrixL().solveInPlace(projected);
+  Eigen::MatrixXd left = scaled;  // D^-1 H D^-1 - A^T A
+  Eigen::VectorXd gradient = scale.cwiseInverse().cwiseProduct(normal.gradient);  // less A^T r'
   residual.setZero(n + 1);
   jacobian.setZero(n + 1, n);
   constexpr double kNoCurvature = 1e-13;  // of a unit diagonal: rounding of the sums
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double d = ldlt.vectorD()(i);
-    if (!(d > kNoCurvature)) continue;
-    residual(i) = projected(i) / std::sqrt(d);
-    jacobian.row(i) = std::sqrt(d) * rows.row(i).cwiseProduct(scale.transpose());
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::Index pivot = 0;
+    const double d = left.diagonal().maxCoeff(&pivot);
+    if (!(d > kNoCurvature)) break;
+    const Eigen::VectorXd row = left.col(pivot) / std::sqrt(d);
+    residual(k) = gradient(pivot) / std::sqrt(d);
+    jacobian.row(k) = row.cwiseProduct(scale);
+    left.noalias() -= row * row.transpose();
+    gradient -= residual(k) * row;
+    left.row(pivot).setZero();
+    left.col(pivot).setZero();
+    gradient(pivot) = 0.0;
   }
   residual(n) = std::sqrt(std::max(0.0, 2.0 * normal.cost - residual.head(n).squaredNorm()));
 }
