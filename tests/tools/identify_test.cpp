@@ -259,7 +259,7 @@ TEST(Identify, AScaleIsNamedThatLengthsHaveAbsorbed) {
 }
 
 TEST(Identify, AScaleIsNamedBesideWrongZeros) {
-  SpoiledRobot arm(2);
+  SpoiledRobot arm(4);
   arm.spoil(0, "wrist_1_joint_z", 0.0015);
   std::vector<Sample> samples = arm.samples();
   for (Sample& sample : samples) {
