@@ -268,7 +268,7 @@ TEST(Identify, AScaleIsNamedBesideWrongZeros) {
   }
   scale_tracker(samples, 1.02);
   EXPECT_THAT(scales_in(arm, samples),
-              ElementsAre(AllOf(HasSubstr("with the points of 'tracker' multiplied by 0.980"),
+              ElementsAre(AllOf(HasSubstr("with the points of 'tracker' multiplied by 0.98"),
                                 HasSubstr(" falls from "), HasSubstr(" with zeros in place of "))));
 }
 
