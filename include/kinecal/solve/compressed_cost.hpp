@@ -10,10 +10,10 @@
 // under the root is never negative: |A^-T g|^2 is the part of the weighted residual in the range of
 // J, and robust losses satisfy rho' s <= rho (errors/loss.hpp).
 //
-// A comes from a Cholesky decomposition of H, scaled to a unit diagonal, with the largest pivot first.  H is singular if
-// the samples cannot separate some parameters; directions without curvature get rows of zeros.  A decomposition whose
-// pivots are not the largest that are left (Eigen's LDLT chooses by the diagonal of H itself) divides by rounding in
-// between, and then A^T r' is not the gradient.
+// A comes from an LDL^T of H, scaled to a unit diagonal.  H is singular if the samples cannot separate some parameters.
+// Eigen's LDL^T takes its pivots by the diagonal of H itself, so it divides by rounding in between, and A^T r' is not the
+// gradient.  Then A comes from a Cholesky decomposition with the largest pivot first; directions without curvature get
+// rows of zeros.
 // Source: Higham, Analysis of the Cholesky Decomposition of a Semi-definite Matrix, 1990.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

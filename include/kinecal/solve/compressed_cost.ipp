@@ -2,11 +2,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "kinecal/solve/compressed_cost.hpp"
 
 namespace kinecal::detail {
+
+/// Of a unit diagonal: rounding of the sums.
+inline constexpr double kNoCurvature = 1e-13;
+
+/// A and A^-T g of a regular H = P^T L diag(d) L^T P:  A = diag(sqrt d) L^T P.
+inline void set_regular(const Eigen::LDLT<Eigen::MatrixXd>& ldlt, const Eigen::VectorXd& gradient,
+                        EquivalentResidual& all) {
+  const Eigen::Index n = gradient.size();
+  Eigen::MatrixXd rows = ldlt.matrixU();
+  for (Eigen::Index k = n - 1; k >= 0; --k) {  // times P
+    rows.col(k).swap(rows.col(ldlt.transpositionsP().coeff(k)));
+  }
+  Eigen::VectorXd projected = ldlt.transpositionsP() * gradient;
+  ldlt.matrixL().solveInPlace(projected);
+  const Eigen::VectorXd roots = ldlt.vectorD().cwiseSqrt();
+  all.residual.head(n) = projected.cwiseQuotient(roots);
+  all.jacobian.topRows(n) = roots.asDiagonal() * rows;
+}
+
+/// The same of any H, with the largest pivot first and zeros where no curvature is left.
+/// @param left  H, which becomes H - A^T A
+inline void set_singular(Eigen::MatrixXd left, Eigen::VectorXd gradient, EquivalentResidual& all) {
+  for (Eigen::Index k = 0; k < gradient.size(); ++k) {
+    Eigen::Index pivot = 0;
+    const double d = left.diagonal().maxCoeff(&pivot);
+    if (!(d > kNoCurvature)) break;
+    const Eigen::VectorXd row = left.col(pivot) / std::sqrt(d);
+    all.residual(k) = gradient(pivot) / std::sqrt(d);
+    all.jacobian.row(k) = row;
+    left.noalias() -= row * row.transpose();
+    gradient -= all.residual(k) * row;
+    left.row(pivot).setZero();
+    left.col(pivot).setZero();
+    gradient(pivot) = 0.0;
+  }
+}
 
 KINECAL_INLINE EquivalentResidual::EquivalentResidual(const NormalEquations& normal) {
   const Eigen::Index n = normal.gradient.size();
@@ -14,24 +51,16 @@ KINECAL_INLINE EquivalentResidual::EquivalentResidual(const NormalEquations& nor
       normal.hessian.diagonal().unaryExpr([](double h) { return h > 0.0 ? std::sqrt(h) : 1.0; });
   const Eigen::MatrixXd scaled =
       scale.cwiseInverse().asDiagonal() * normal.hessian * scale.cwiseInverse().asDiagonal();
-  Eigen::MatrixXd left = scaled;  // D^-1 H D^-1 - A^T A
-  Eigen::VectorXd gradient = scale.cwiseInverse().cwiseProduct(normal.gradient);  // less A^T r'
+  const Eigen::VectorXd gradient = scale.cwiseInverse().cwiseProduct(normal.gradient);
   residual.setZero(n + 1);
   jacobian.setZero(n + 1, n);
-  constexpr double kNoCurvature = 1e-13;  // of a unit diagonal: rounding of the sums
-  for (Eigen::Index k = 0; k < n; ++k) {
-    Eigen::Index pivot = 0;
-    const double d = left.diagonal().maxCoeff(&pivot);
-    if (!(d > kNoCurvature)) break;
-    const Eigen::VectorXd row = left.col(pivot) / std::sqrt(d);
-    residual(k) = gradient(pivot) / std::sqrt(d);
-    jacobian.row(k) = row.cwiseProduct(scale);
-    left.noalias() -= row * row.transpose();
-    gradient -= residual(k) * row;
-    left.row(pivot).setZero();
-    left.col(pivot).setZero();
-    gradient(pivot) = 0.0;
+  const Eigen::LDLT<Eigen::MatrixXd> ldlt(scaled);
+  if (ldlt.vectorD().minCoeff() > kNoCurvature) {
+    set_regular(ldlt, gradient, *this);
+  } else {
+    set_singular(scaled, gradient, *this);
   }
+  jacobian *= scale.asDiagonal();
   residual(n) = std::sqrt(std::max(0.0, 2.0 * normal.cost - residual.head(n).squaredNorm()));
 }
 
