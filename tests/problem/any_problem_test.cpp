@@ -83,16 +83,16 @@ TEST(Problem, RefusesTheWrongNumberOrKindOfSensors) {
               HasSubstr("sensor 'camera', a camera3d, does not deliver pixels"));
 }
 
-/// A block of 27 parameters of its own.
+/// A block of 21 parameters of its own.
 struct Many {
   static constexpr const char* kUnit = "m";
-  static constexpr std::array<ParameterInfo, 27> kParameters = [] {
-    std::array<ParameterInfo, 27> all;
+  static constexpr std::array<ParameterInfo, 21> kParameters = [] {
+    std::array<ParameterInfo, 21> all;
     all.fill({"p"});
     return all;
   }();
   template <class S>
-  Vector3<S> operator()(const Vector3<S>& p, const std::array<S, 27>& own) const {
+  Vector3<S> operator()(const Vector3<S>& p, const std::array<S, 21>& own) const {
     return p * own[0];
   }
 };

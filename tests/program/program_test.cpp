@@ -961,7 +961,7 @@ TEST_F(Program, TakesOnlySamplesOfTheGroundForAGroundThatTheBlockNames) {
     EXPECT_THAT(result.err, Not(HasSubstr("floor")));
     const YAML::Node report = YAML::LoadFile((folder_ / "out/report.json").string());
     EXPECT_EQ(report["error_blocks"][0]["count"].as<int>(), 60);
-    EXPECT_EQ(report["error_blocks"][1]["count"].as<int>(), 20);
+    EXPECT_EQ(report["error_blocks"][1]["count"].as<int>(), 20) << result.out;
     EXPECT_NEAR(YAML::LoadFile((folder_ / "out/calibration.yaml").string())["elbow"].as<double>(),
                 0.02, 1e-9);
   }

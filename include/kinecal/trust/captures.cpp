@@ -147,11 +147,13 @@ class CaptureSearch {
       const double factor = tail == Tail::as_seen ? tail_[t] : 1.0;
       limit_[t] = factor * std::sqrt(k * f_exceeded(k, b, chance));
     }
+    constexpr double kRounding = 1e-9;  // of exact samples, metres or pixels
     std::vector<bool> bad(bad_.size(), false);
     for (const FeatureRows& f : features_) {
-      const TermOptions& options = problem_.term(f.term).options;
-      const double stated = options.sigma ? std::abs(options.scale) : 0.0;
-      if (times(f) > limit_[static_cast<std::size_t>(f.term)] && distance(f) > stated)
+      const Term& term = problem_.term(f.term);
+      const double least = std::max(term.options.sigma ? std::abs(term.options.scale) : 0.0,
+                                    kRounding * term.weight);
+      if (times(f) > limit_[static_cast<std::size_t>(f.term)] && distance(f) > least)
         bad[static_cast<std::size_t>(f.sample)] = true;
     }
     bad_ = std::move(bad);

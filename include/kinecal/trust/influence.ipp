@@ -30,7 +30,7 @@ inline void set_influences(const LinearFit& fit, std::vector<CaptureError>& capt
     const Eigen::MatrixXd j = root.asDiagonal() * fit.jacobian.middleRows(first, size);
     const Eigen::VectorXd r = root.cwiseProduct(fit.residual.segment(first, size));
     Eigen::VectorXd step;
-    if (size > fit.size()) {
+    if (fit.size() > 0 && size > fit.size()) {
       const Eigen::MatrixXd left = hessian - j.transpose() * j;
       step = left.fullPivLu().solve(j.transpose() * r);
     } else {
