@@ -105,7 +105,7 @@ struct Lens {
 
 /// The true camera is inside the ellipse of 95 % at 95 % of the places, and halves differ as the +- allow.
 TEST(ProjectionMap, CoversTheTruth) {
-  const int repetitions = test::repetitions(200, 4);
+  const int repetitions = test::repetitions_of_study(200, test::kIsSlow ? 4 : 12);
   for (const Lens& lens : {Lens{"plumb_bob", test::distorted_camera(), kPlumbBob, 0.6},
                            Lens{"equidistant", test::fisheye_camera(611.0), kEquidistant, 1.2},
                            Lens{"equidistant", test::fisheye_camera(390.0), kEquidistant, 2.5}}) {
