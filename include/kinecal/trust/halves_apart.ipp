@@ -5,26 +5,51 @@
 #include <array>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
+#include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/projection_map.hpp"
 
 namespace kinecal::detail {
 
-/// The parameters after solving each half of the poses apart; nullopt if that fails.
-[[nodiscard]] inline std::optional<std::array<Eigen::VectorXd, 2>> halves_of(
-    const KnownSolution& solution) {
+/// Two halves of the poses.
+struct Halves {
+  std::array<Eigen::VectorXd, 2>
+      values;  ///< of all parameters of the table, each half solved apart
+  Eigen::MatrixXd
+      spread;  ///< (free x free) covariance of their difference over unit noise: (H_1^-1 + H_2^-1)
+  Eigen::MatrixXd whole;  ///< (free x free) the same of all poses: H^-1
+
+  /// Covariance of the difference of some free parameters.
+  /// @param known  their covariance with all poses, which has the noise and what poses share
+  [[nodiscard]] Eigen::MatrixXd covariance(const std::vector<int>& columns,
+                                           const Eigen::MatrixXd& known) const {
+    const Eigen::MatrixXd unit = whole(columns, columns);
+    return known.diagonal().cwiseQuotient(unit.diagonal()).mean() * spread(columns, columns);
+  }
+};
+
+/// Solves each half of the poses apart; nullopt if that fails.
+[[nodiscard]] inline std::optional<Halves> halves_of(const KnownSolution& solution) {
   constexpr int kFewest = 8;
   if (solution.poses.count < kFewest) return std::nullopt;
-  std::array<Eigen::VectorXd, 2> halves;
+  const LinearFit& fit = solution.fit;
+  const Eigen::MatrixXd& basis = fit.coordinates.basis;
+  const auto inverse = [&](const Eigen::VectorXd& weights, double priors) {
+    return Eigen::MatrixXd(basis * Spectrum(information(fit, weights, priors)).pseudo_inverse() *
+                           basis.transpose());
+  };
+  Halves halves{{}, Eigen::MatrixXd::Zero(basis.rows(), basis.rows()), inverse(fit.loss, 1.0)};
   for (int half = 0; half < 2; ++half) {
-    Eigen::VectorXd weights = solution.fit.loss;
-    for (const RowBlock& block : solution.fit.blocks) {
+    Eigen::VectorXd weights = fit.loss;
+    for (const RowBlock& block : fit.blocks) {
       const int pose = solution.poses.of_sample[static_cast<std::size_t>(block.sample)];
       if (pose % 2 == half) weights.segment(block.first, block.size).setZero();
     }
+    halves.spread += inverse(weights, 0.5);
     try {
-      halves[static_cast<std::size_t>(half)] =
-          refit(solution.evaluator, solution.values, solution.fit, weights, 0.5).values;
+      halves.values[static_cast<std::size_t>(half)] =
+          refit(solution.evaluator, solution.values, fit, weights, 0.5).values;
     } catch (const std::domain_error&) {  // a point behind a camera
       return std::nullopt;
     }

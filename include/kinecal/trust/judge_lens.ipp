@@ -60,7 +60,7 @@ inline void judge_folds(const Assessment& step, Judgement& judgement) {
 /// has a pose of its own: else a robot that errs in some poses looks alike, because poses and places go together.
 inline void judge_projection(const Assessment& step, Judgement& judgement) {
   if (!(step.used > 0.0)) return;
-  constexpr double kChance = 0.01, kPart = 0.35, kSmallChance = 1e-3, kTimes = 2.0, kPixels = 0.1;
+  constexpr double kChance = 0.01, kPart = 0.35, kSmallChance = 1e-3, kTimes = 2.5, kPixels = 0.1;
   const std::string cause =
       ": its lens has a shape that its model does not have, or the target has one; try another "
       "('lens: auto'), or measure the target";

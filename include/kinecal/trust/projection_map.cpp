@@ -38,10 +38,11 @@ class CameraMap {
     motion_ = motion();
   }
 
-  /// @param apart  difference of the camera's free parameters between halves
+  /// @param apart   difference of the camera's free parameters between halves
+  /// @param allowed  covariance of that difference
   [[nodiscard]] ProjectionMap map(const std::string& name,
                                   const std::optional<Eigen::VectorXd>& apart,
-                                  double freedom) const {
+                                  const Eigen::MatrixXd& allowed, double freedom) const {
     ProjectionMap all{.sensor = name, .low = seen_.low, .high = seen_.high};
     all.distance = distance_;
     constexpr int kColumns = 16;
@@ -62,7 +63,7 @@ class CameraMap {
       if (cell != nullptr) ++all.cells[static_cast<std::size_t>(cell - all.cells.data())].features;
     }
     all.numbers = camera_.numbers(seen_.settings, deviations_);
-    if (apart && determined_) all.halves = compared(all, derivatives, freedom);
+    if (apart && determined_) all.halves = compared(all, derivatives, allowed, freedom);
     return all;
   }
 
@@ -104,10 +105,9 @@ class CameraMap {
     cell.difference = apart ? (a * *apart).norm() : 0.0;
     return a;
   }
-  /// Each half has twice the covariance of all, and so has four times of it their difference.
   [[nodiscard]] std::optional<HalvesApart> compared(
       const ProjectionMap& map, const std::vector<SolvedProjection::PixelByFree>& derivatives,
-      double freedom) const {
+      const Eigen::MatrixXd& covariance, double freedom) const {
     const Eigen::Index n = covariance_.rows();
     Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(n, n);
     double difference = 0.0, cells = 0.0;
@@ -118,7 +118,7 @@ class CameraMap {
       cells += 1.0;
     }
     if (cells == 0.0) return std::nullopt;
-    const Eigen::MatrixXd of_pixels = 4.0 * covariance_ * squares;
+    const Eigen::MatrixXd of_pixels = covariance * squares;
     const double allowed = of_pixels.trace();
     if (!(allowed > 0.0)) return std::nullopt;
     const double independent = allowed * allowed / (of_pixels * of_pixels).trace();
@@ -167,7 +167,7 @@ std::array<double, 3> ProjectionMap::deviations() const {
 std::vector<ProjectionMap> projection_maps(const KnownSolution& solution) {
   const AnyProblem& problem = solution.evaluator.problem();
   std::vector<ProjectionMap> maps;
-  std::optional<std::array<Eigen::VectorXd, 2>> halves;
+  std::optional<detail::Halves> halves;
   const FeaturePlaces places(problem, solution.values);
   for (std::size_t s = 0; s < problem.sensors().size(); ++s) {
     const MountedSensor& mounted = problem.sensors()[s];
@@ -179,12 +179,18 @@ std::vector<ProjectionMap> projection_maps(const KnownSolution& solution) {
     if (maps.empty()) halves = detail::halves_of(solution);
     std::optional<Eigen::VectorXd> apart;
     const auto own = [&](std::size_t half) {
-      const Eigen::VectorXd& values = (*halves)[half];
+      const Eigen::VectorXd& values = halves->values[half];
       return camera.own({values.data(), static_cast<std::size_t>(values.size())});
     };
-    if (halves) apart = own(0) - own(1);
+    Eigen::MatrixXd allowed;
+    if (halves) {
+      const std::vector<int>& columns = camera.columns();
+      apart = own(0) - own(1);
+      allowed =
+          halves->covariance(columns, solution.uncertainty.covariance.matrix()(columns, columns));
+    }
     maps.push_back(detail::CameraMap(solution, camera, std::move(seen))
-                       .map(mounted.mount().name, apart, solution.poses.count - 1.0));
+                       .map(mounted.mount().name, apart, allowed, solution.poses.count - 1.0));
   }
   return maps;
 }

@@ -8,8 +8,8 @@
 // J_i derivatives of a pixel by i, J_m by a rigid motion m of the camera; G i is the motion that takes up most of a
 // change of i.  The covariance of a pixel is A C A^T, C that of i.
 //
-// Two halves of the poses, solved apart, should differ by A 2C^1/2 and no more: cross-validation.  If they differ by
-// much more, the lens has a shape that its model does not have, or the target has one.
+// Two halves of the poses, solved apart, should differ as the information of each half says: cross-validation.  If they
+// differ by much more, the lens has a shape that its model does not have, or the target has one.
 // Source: mrcal's documentation, "Projection uncertainty" and "Cross-validation", for what to ask; the rest is linear
 // propagation, with Satterthwaite's degrees of freedom for the sum of squares.
 // SPDX-License-Identifier: Apache-2.0
