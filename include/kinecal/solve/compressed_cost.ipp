@@ -12,9 +12,11 @@ namespace kinecal::detail {
 /// Of a unit diagonal: rounding of the sums.
 inline constexpr double kNoCurvature = 1e-13;
 
-/// A and A^-T g of a regular H = P^T L diag(d) L^T P:  A = diag(sqrt d) L^T P.
+/// A and A^-T g of a regular H = D P^T L diag(d) L^T P D:  A = diag(sqrt d) L^T P D.
+/// @param gradient  D^-1 g
+/// @param scale     D
 inline void set_regular(const Eigen::LDLT<Eigen::MatrixXd>& ldlt, const Eigen::VectorXd& gradient,
-                        EquivalentResidual& all) {
+                        const Eigen::VectorXd& scale, EquivalentResidual& all) {
   const Eigen::Index n = gradient.size();
   Eigen::MatrixXd rows = ldlt.matrixU();
   for (Eigen::Index k = n - 1; k >= 0; --k) {  // times P
@@ -24,19 +26,21 @@ inline void set_regular(const Eigen::LDLT<Eigen::MatrixXd>& ldlt, const Eigen::V
   ldlt.matrixL().solveInPlace(projected);
   const Eigen::VectorXd roots = ldlt.vectorD().cwiseSqrt();
   all.residual.head(n) = projected.cwiseQuotient(roots);
-  all.jacobian.topRows(n) = roots.asDiagonal() * rows;
+  all.jacobian.topRows(n) = rows * scale.asDiagonal();
+  all.jacobian.topRows(n) = roots.asDiagonal() * all.jacobian.topRows(n);
 }
 
 /// The same of any H, with the largest pivot first and zeros where no curvature is left.
-/// @param left  H, which becomes H - A^T A
-inline void set_singular(Eigen::MatrixXd left, Eigen::VectorXd gradient, EquivalentResidual& all) {
+/// @param left  D^-1 H D^-1, which becomes D^-1 (H - A^T A) D^-1
+inline void set_singular(Eigen::MatrixXd left, Eigen::VectorXd gradient,
+                         const Eigen::VectorXd& scale, EquivalentResidual& all) {
   for (Eigen::Index k = 0; k < gradient.size(); ++k) {
     Eigen::Index pivot = 0;
     const double d = left.diagonal().maxCoeff(&pivot);
     if (!(d > kNoCurvature)) break;
     const Eigen::VectorXd row = left.col(pivot) / std::sqrt(d);
     all.residual(k) = gradient(pivot) / std::sqrt(d);
-    all.jacobian.row(k) = row;
+    all.jacobian.row(k) = row.cwiseProduct(scale);
     left.noalias() -= row * row.transpose();
     gradient -= all.residual(k) * row;
     left.row(pivot).setZero();
@@ -56,11 +60,10 @@ KINECAL_INLINE EquivalentResidual::EquivalentResidual(const NormalEquations& nor
   jacobian.setZero(n + 1, n);
   const Eigen::LDLT<Eigen::MatrixXd> ldlt(scaled);
   if (ldlt.vectorD().minCoeff() > kNoCurvature) {
-    set_regular(ldlt, gradient, *this);
+    set_regular(ldlt, gradient, scale, *this);
   } else {
-    set_singular(scaled, gradient, *this);
+    set_singular(scaled, gradient, scale, *this);
   }
-  jacobian *= scale.asDiagonal();
   residual(n) = std::sqrt(std::max(0.0, 2.0 * normal.cost - residual.head(n).squaredNorm()));
 }
 
