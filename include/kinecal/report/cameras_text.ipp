@@ -81,9 +81,7 @@ namespace kinecal::detail {
   std::array<bool, kImageRegions> empty;
   empty.fill(true);
   for (const KnownPixel& cell : map.cells) {
-    if (cell.features == 0) continue;
-    empty[image_region((cell.pixel[0] - map.low[0]) / (map.high[0] - map.low[0]),
-                       (cell.pixel[1] - map.low[1]) / (map.high[1] - map.low[1]))] = false;
+    if (cell.features > 0) empty[map.region_of(cell)] = false;
   }
   const std::string regions = image_regions_text(empty);
   return regions.empty() ? ""

@@ -14,21 +14,9 @@
 #include "kinecal/errors/plane_to_plane.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/report/report_data.hpp"
+#include "kinecal/trust/feature_places.hpp"
 
 namespace kinecal::detail {
-
-/// The feature of an observation that a residual belongs to; nullptr if there is none.
-[[nodiscard]] inline const Feature* observed_feature(const Observation& seen,
-                                                     const FeatureLabel& label) {
-  if (label.id) {
-    for (const Feature& feature : seen.features) {
-      if (feature.id == label.id) return &feature;
-    }
-    return nullptr;
-  }
-  const auto place = static_cast<std::size_t>(label.place);
-  return place < seen.features.size() ? &seen.features[place] : nullptr;
-}
 
 /// Adds where the cameras of a block saw a feature.
 inline void add_sight(const AnyProblem& problem, const Term& term, const Sample& sample,

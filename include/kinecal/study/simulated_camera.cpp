@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "kinecal/sensors/depth_polynomial.hpp"
 #include "kinecal/sensors/lens_names.hpp"
 
 namespace kinecal {
@@ -137,10 +139,9 @@ bool is_at_an_edge(const DepthImage& depth, int u, int v) {
 
 /// The depth z1 of which the polynomial makes a true depth.  z = z1 (1 + z_quadratic z1 + p)
 double before_polynomial(const SimulatedCamera& camera, const Vector3<double>& ray, double z) {
-  const auto& c = camera.errors;
-  const double x = ray.x(), y = ray.y();
-  const double one_and_p = 1.0 + c[7] * x + c[8] * y + c[9] * x * x + c[10] * x * y + c[11] * y * y;
-  return 2.0 * z / (one_and_p + std::sqrt(one_and_p * one_and_p + 4.0 * c[6] * z));
+  const auto bend = std::span(camera.errors).last<kDepthTerms>();
+  const double one_and_p = depth_factor(0.0, ray.x(), ray.y(), bend);
+  return 2.0 * z / (one_and_p + std::sqrt(one_and_p * one_and_p + 4.0 * bend[0] * z));
 }
 
 /// The depth that the driver reports, metres; NaN outside of its range.

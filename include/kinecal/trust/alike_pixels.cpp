@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "kinecal/text/image_region.hpp"
+#include "kinecal/trust/feature_places.hpp"
 
 namespace kinecal {
 
@@ -60,9 +61,7 @@ class ImageCells {
       there.count += at->second.count;
     }
     found.there = {there.sum.x() / there.count, there.sum.y() / there.count};
-    found.region = kImageRegionNames[image_region(
-        (cell.pixel[0] - map_.low[0]) / (map_.high[0] - map_.low[0]),
-        (cell.pixel[1] - map_.low[1]) / (map_.high[1] - map_.low[1]))];
+    found.region = kImageRegionNames[map_.region_of(cell)];
     return found;
   }
 
@@ -119,17 +118,6 @@ class ImageCells {
   double squares_ = 0.0, count_ = 0.0;
 };
 
-/// The pixel of a feature of a sample; nullptr if there is none.
-[[nodiscard]] const Feature* observed(const Observation& seen, const FeatureLabel& label) {
-  if (!label.id) {
-    const auto place = static_cast<std::size_t>(label.place);
-    return place < seen.features.size() ? &seen.features[place] : nullptr;
-  }
-  const auto at = std::find_if(seen.features.begin(), seen.features.end(),
-                               [&](const Feature& feature) { return feature.id == label.id; });
-  return at == seen.features.end() ? nullptr : &*at;
-}
-
 }  // namespace
 }  // namespace detail
 
@@ -150,7 +138,7 @@ std::vector<AlikePixels> alike_pixels(const AnyProblem& problem, const LinearFit
       if (seen == nullptr) continue;
       for (Eigen::Index i = 0; 2 * i < block.size; ++i) {
         const Feature* feature =
-            detail::observed(*seen, problem.feature(block.term, block.sample, i));
+            observed_feature(*seen, problem.feature(block.term, block.sample, i));
         if (feature == nullptr || !feature->point.allFinite()) continue;
         cells.add(block.sample, feature->point.head<2>(),
                   fit.residual.segment<2>(block.first + 2 * i) / term.weight);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/feature_places.hpp"
 
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -11,6 +12,16 @@ namespace kinecal {
 
 bool is_seen(const Feature& feature) {
   return feature.point.allFinite() && (!feature.rotation || feature.rotation->allFinite());
+}
+
+const Feature* observed_feature(const Observation& seen, const FeatureLabel& label) {
+  if (!label.id) {
+    const auto place = static_cast<std::size_t>(label.place);
+    return place < seen.features.size() ? &seen.features[place] : nullptr;
+  }
+  const auto at = std::find_if(seen.features.begin(), seen.features.end(),
+                               [&](const Feature& feature) { return feature.id == label.id; });
+  return at == seen.features.end() ? nullptr : &*at;
 }
 
 FeaturePlaces::FeaturePlaces(const AnyProblem& problem, ParameterValues values)

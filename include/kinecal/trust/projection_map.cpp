@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "kinecal/geometry/median.hpp"
+#include "kinecal/text/image_region.hpp"
 #include "kinecal/trust/camera_features.ipp"
 #include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/halves_apart.ipp"
@@ -149,6 +150,11 @@ const KnownPixel* ProjectionMap::at(double u, double v) const {
   const int c = std::min(part(u, low[0], high[0], columns), columns - 1);
   const int r = std::min(part(v, low[1], high[1], rows), rows - 1);
   return &cells[static_cast<std::size_t>(r * columns + c)];
+}
+
+std::size_t ProjectionMap::region_of(const KnownPixel& cell) const {
+  const auto share = [&](std::size_t i) { return (cell.pixel[i] - low[i]) / (high[i] - low[i]); };
+  return image_region(share(0), share(1));
 }
 
 std::array<double, 3> ProjectionMap::deviations() const {

@@ -72,6 +72,8 @@ struct ProjectionMap {
 
   /// The cell of a pixel; nullptr outside.
   [[nodiscard]] const KnownPixel* at(double u, double v) const;
+  /// The ninth of the image in which a cell is: text/image_region.hpp.
+  [[nodiscard]] std::size_t region_of(const KnownPixel& cell) const;
   /// Standard deviations at the cell with the least, in the median of cells with features, and at the worst cell that
   /// the lens sees, pixels.
   [[nodiscard]] std::array<double, 3> deviations() const;

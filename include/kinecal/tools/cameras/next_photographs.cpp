@@ -8,39 +8,15 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include "kinecal/capture/homography.hpp"
-#include "kinecal/samples/paired_features.hpp"
-#include "kinecal/text/counted.hpp"
 #include "kinecal/text/image_region.hpp"
-#include "kinecal/tools/cameras/camera_start.hpp"
+#include "kinecal/tools/cameras/target_view.ipp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
-
-/// The corners of a flat target and their pixels; none if the two observations are not of one.
-[[nodiscard]] TargetView flat_view(const Sample& given, const std::string& target,
-                                   const std::string& camera) {
-  const ComparedSensors both{{target, camera}};
-  const std::optional<Sample> paired =
-      has_ids(given) ? pair_features(given, std::span(&both, 1)) : std::nullopt;
-  const Sample& sample = paired ? *paired : given;
-  const Observation *on = sample.observation(target), *seen = sample.observation(camera);
-  TargetView view;
-  if (on == nullptr || seen == nullptr || on->features.size() != seen->features.size()) return view;
-  for (std::size_t i = 0; i < on->features.size(); ++i) {
-    const Vector3<double>&p = on->features[i].point, &pixel = seen->features[i].point;
-    constexpr double kFlat = 1e-6;  // metres
-    if (!p.allFinite() || !pixel.allFinite()) continue;
-    if (std::abs(p.z() - on->features[0].point.z()) > kFlat) return {};
-    view.plane.emplace_back(p.head<2>());
-    view.pixels.emplace_back(pixel.head<2>());
-  }
-  return view;
-}
 
 /// What the views of a camera have so far.
 struct SeenSoFar {
@@ -121,7 +97,9 @@ std::vector<std::string> next_photographs(std::span<const Sample> samples) {
       detail::SeenSoFar& so_far = cameras[seen.sensor];
       so_far.add(seen);
       for (const Observation& target : sample.observations) {
-        if (!target.camera) so_far.add(detail::flat_view(sample, target.sensor, seen.sensor));
+        const bool pairs = has_ids(sample) || target.features.size() == seen.features.size();
+        if (!target.camera && pairs)
+          so_far.add(detail::target_view(target.sensor, seen.sensor, sample));
       }
     }
   }

@@ -3,13 +3,11 @@
 #pragma once
 
 #include <algorithm>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "kinecal/config/parameters_from_config.hpp"
-#include "kinecal/samples/paired_features.hpp"
-#include "kinecal/tools/cameras/camera_start.hpp"
+#include "kinecal/tools/cameras/target_view.ipp"
 
 namespace kinecal::detail {
 
@@ -48,26 +46,9 @@ struct TargetPair {
   return pairs;
 }
 
-/// The view of a pair in a sample; no corners if there is none, or the target is not flat.
-[[nodiscard]] inline TargetView target_view(const TargetPair& pair, const Sample& given) {
-  const ComparedSensors both{{pair.target->name, pair.camera->name}};
-  const std::optional<Sample> paired =
-      has_ids(given) ? pair_features(given, std::span(&both, 1)) : std::nullopt;
-  const Sample& sample = paired ? *paired : given;
-  const Observation *target = sample.observation(pair.target->name),
-                    *camera = sample.observation(pair.camera->name);
-  TargetView view;
-  if (target == nullptr || camera == nullptr) return view;
-  const std::size_t count = std::min(target->features.size(), camera->features.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vector3<double>&on = target->features[i].point, &seen = camera->features[i].point;
-    if (!on.allFinite() || !seen.allFinite()) continue;
-    constexpr double kFlat = 1e-6;  // metres
-    if (std::abs(on.z() - target->features[0].point.z()) > kFlat) return {};
-    view.plane.emplace_back(on.head<2>());
-    view.pixels.emplace_back(seen.head<2>());
-  }
-  return view;
+/// The view of a pair in a sample: see target_view.ipp.
+[[nodiscard]] inline TargetView target_view(const TargetPair& pair, const Sample& sample) {
+  return target_view(pair.target->name, pair.camera->name, sample);
 }
 
 }  // namespace kinecal::detail
