@@ -3,11 +3,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <vector>
 
 #include "kinecal/solve/spectrum.hpp"
+#include "kinecal/trust/f_distribution.hpp"
+#include "kinecal/trust/projection_derivatives.ipp"
 #include "kinecal/trust/projection_map.hpp"
 
 namespace kinecal::detail {
@@ -55,6 +58,31 @@ struct Halves {
     }
   }
   return halves;
+}
+
+/// How far halves are apart where features are, beside what is expected; nullopt if nothing is.
+/// @param derivatives  A of projection_map.hpp, of each cell
+/// @param covariance   of the difference of the camera's free parameters
+/// @param freedom      of the noise
+[[nodiscard]] inline std::optional<HalvesApart> halves_apart(
+    const ProjectionMap& map, const std::vector<SolvedProjection::PixelByFree>& derivatives,
+    const Eigen::MatrixXd& covariance, double freedom) {
+  const Eigen::Index n = covariance.rows();
+  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(n, n);
+  double difference = 0.0, cells = 0.0;
+  for (std::size_t i = 0; i < map.cells.size(); ++i) {
+    if (map.cells[i].features == 0 || !derivatives[i].allFinite()) continue;
+    squares += derivatives[i].transpose() * derivatives[i];
+    difference += map.cells[i].difference * map.cells[i].difference;
+    cells += 1.0;
+  }
+  if (cells == 0.0) return std::nullopt;
+  const Eigen::MatrixXd of_pixels = covariance * squares;
+  const double allowed = of_pixels.trace();
+  if (!(allowed > 0.0)) return std::nullopt;
+  const double independent = allowed * allowed / (of_pixels * of_pixels).trace();
+  return HalvesApart{std::sqrt(difference / cells), std::sqrt(allowed / cells),
+                     f_tail(difference / allowed, independent, freedom)};
 }
 
 }  // namespace kinecal::detail

@@ -11,7 +11,6 @@
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/text/image_region.hpp"
 #include "kinecal/trust/camera_features.ipp"
-#include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/halves_apart.ipp"
 #include "kinecal/trust/projection_derivatives.ipp"
 
@@ -64,7 +63,7 @@ class CameraMap {
       if (cell != nullptr) ++all.cells[static_cast<std::size_t>(cell - all.cells.data())].features;
     }
     all.numbers = camera_.numbers(seen_.settings, deviations_);
-    if (apart && determined_) all.halves = compared(all, derivatives, allowed, freedom);
+    if (apart && determined_) all.halves = halves_apart(all, derivatives, allowed, freedom);
     return all;
   }
 
@@ -105,26 +104,6 @@ class CameraMap {
     }
     cell.difference = apart ? (a * *apart).norm() : 0.0;
     return a;
-  }
-  [[nodiscard]] std::optional<HalvesApart> compared(
-      const ProjectionMap& map, const std::vector<SolvedProjection::PixelByFree>& derivatives,
-      const Eigen::MatrixXd& covariance, double freedom) const {
-    const Eigen::Index n = covariance_.rows();
-    Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(n, n);
-    double difference = 0.0, cells = 0.0;
-    for (std::size_t i = 0; i < map.cells.size(); ++i) {
-      if (map.cells[i].features == 0 || !derivatives[i].allFinite()) continue;
-      squares += derivatives[i].transpose() * derivatives[i];
-      difference += map.cells[i].difference * map.cells[i].difference;
-      cells += 1.0;
-    }
-    if (cells == 0.0) return std::nullopt;
-    const Eigen::MatrixXd of_pixels = covariance * squares;
-    const double allowed = of_pixels.trace();
-    if (!(allowed > 0.0)) return std::nullopt;
-    const double independent = allowed * allowed / (of_pixels * of_pixels).trace();
-    return HalvesApart{std::sqrt(difference / cells), std::sqrt(allowed / cells),
-                       f_tail(difference / allowed, independent, freedom)};
   }
 
   const SolvedProjection& camera_;
