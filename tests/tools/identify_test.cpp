@@ -235,12 +235,29 @@ TEST(Identify, TheVerdictNamesAQuarterTurn) {
               testing::Contains(HasSubstr("A quarter turn: is the motor screwed on so?")));
 }
 
+/// Sentences about a scale, of a calibration.
+std::vector<std::string> scales_in(const Config& config, const Robot& robot,
+                                   std::span<const Sample> samples) {
+  Calibration calibration = assembled(config, robot, samples);
+  const JudgedResult judged = calibrate_and_judge(calibration, samples);
+  return wrong_scales(config, robot, samples, judged.result.table, judged.assessments.back());
+}
+
 /// Sentences about a scale, of the calibration that a search finds.
 std::vector<std::string> scales_in(const SpoiledRobot& arm, std::span<const Sample> samples) {
-  const Config found = search_robot(arm.config(), arm.robot(), samples).config;
-  Calibration calibration = assembled(found, arm.robot(), samples);
-  const JudgedResult judged = calibrate_and_judge(calibration, samples);
-  return wrong_scales(found, arm.robot(), samples, judged.result.table, judged.assessments.back());
+  return scales_in(search_robot(arm.config(), arm.robot(), samples).config, arm.robot(), samples);
+}
+
+/// A configuration that holds the zeros and frees the places of some joints instead.
+Config lengths_for_zeros(const SpoiledRobot& arm, const std::vector<std::string>& joints) {
+  Config config = arm.config();
+  std::erase_if(config.steps.front().free_params,
+                [&](const FreeParamConfig& free) { return arm.robot().has_joint(free.name); });
+  for (const std::string& joint : joints) {
+    config.steps.front().free_frames.push_back(
+        {joint, {true, true, true, false, false, false}, {}});
+  }
+  return config;
 }
 
 void scale_tracker(std::vector<Sample>& samples, double factor) {
@@ -267,7 +284,9 @@ TEST(Identify, AScaleIsNamedBesideWrongZeros) {
     sample.joint_positions[2] += 0.014;
   }
   scale_tracker(samples, 1.02);
-  EXPECT_THAT(scales_in(arm, samples),
+  const Config lengths =
+      lengths_for_zeros(arm, {"elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"});
+  EXPECT_THAT(scales_in(lengths, arm.robot(), samples),
               ElementsAre(AllOf(HasSubstr("with the points of 'tracker' multiplied by 0.98"),
                                 HasSubstr(" falls from "), HasSubstr(" with zeros in place of "))));
 }
