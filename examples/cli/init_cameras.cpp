@@ -23,12 +23,12 @@
 namespace kinecal::cli {
 
 int init_cameras(const InitOptions& options) {
+  if (!options.from.empty()) throw InputError("--from does not go with --cameras; give --target");
   const auto target =
       options.targets.size() == 1 ? init_target(options.targets.front()) : std::nullopt;
   if (!target || !is_board(target->target)) {
     throw InputError("--target: cameras alone see a board: checkerboard, apriltag or charuco");
   }
-  if (!options.from.empty()) throw InputError("--from does not go with --cameras");
   const std::filesystem::path folder = folder_of(options.output);
   const std::string capture = !options.capture.empty() ? options.capture
                               : folder == "."          ? "capture.yaml"

@@ -143,46 +143,56 @@ struct PoseFit {
 }  // namespace
 }  // namespace detail
 
+std::optional<TargetFit> fit_target(std::vector<Vector3<double>> points,
+                                    const std::vector<Vector3<double>>& directions, double focal) {
+  detail::SeenTarget seen{std::move(points), {}, focal};
+  const Matrix3<double> turn = turn_to_axis(directions);
+  for (const Vector3<double>& direction : directions) {
+    const Vector3<double> turned = turn * direction;
+    if (!(turned.z() > 0.0)) return std::nullopt;
+    seen.rays.emplace_back(turned.hnormalized());
+  }
+  const auto start = detail::first_pose(seen);
+  if (!start) return std::nullopt;
+  detail::PoseFit best = detail::refined_pose(seen, *start),
+                  other = detail::refined_pose(seen, detail::reflected_pose(seen, best.pose));
+  if (other.cost < best.cost) std::swap(best, other);
+  if (!std::isfinite(best.cost)) return std::nullopt;
+  const Pose<double> camera_T_turned{turn.transpose(), Vector3<double>::Zero()};
+  return TargetFit{camera_T_turned * best.pose, best.cost, camera_T_turned * other.pose,
+                   other.cost};
+}
+
 TargetPose target_pose(const std::vector<TargetCorner>& corners, const CameraInfo& camera) {
-  detail::SeenTarget seen;
-  std::vector<Vector3<double>> directions;
+  std::vector<Vector3<double>> points, directions;
+  double focal = 1.0;
   try {
     const Lens lens(camera);
-    seen.focal = lens.focal_length();
+    focal = lens.focal_length();
     for (const TargetCorner& corner : corners) {
-      seen.points.push_back(corner.target);
+      points.push_back(corner.target);
       directions.push_back(lens.ray(corner.pixel.x(), corner.pixel.y()));
     }
   } catch (const std::exception& error) {
     return {std::nullopt, 0.0, std::string("the pose needs the camera's lens: ") + error.what()};
   }
-  const Matrix3<double> turn = turn_to_axis(directions);
-  for (const Vector3<double>& direction : directions) {
-    const Vector3<double> turned = turn * direction;
-    if (!(turned.z() > 0.0)) return {std::nullopt, 0.0, "its corners do not show a pose"};
-    seen.rays.emplace_back(turned.hnormalized());
-  }
-  const auto start = detail::first_pose(seen);
-  if (!start) return {std::nullopt, 0.0, "its corners are too few for a pose"};
-  detail::PoseFit best = detail::refined_pose(seen, *start),
-                  other = detail::refined_pose(seen, detail::reflected_pose(seen, best.pose));
-  if (other.cost < best.cost) std::swap(best, other);
-  const double count = static_cast<double>(corners.size()), rms = std::sqrt(best.cost / count);
-  if (!std::isfinite(rms)) return {std::nullopt, 0.0, "its corners do not show a pose"};
+  if (corners.size() < 4) return {std::nullopt, 0.0, "its corners are too few for a pose"};
+  const auto fit = fit_target(std::move(points), directions, focal);
+  if (!fit) return {std::nullopt, 0.0, "its corners do not show a pose"};
+  const double count = static_cast<double>(corners.size()), rms = std::sqrt(fit->cost / count);
   // The log of the ratio of their probabilities, for corners that are exact to 0.1 pixels.
   constexpr double kCorner = 0.1, kClear = 6.0, kSame = 5.0 * std::numbers::pi / 180.0;
-  const double variance = std::max(kCorner * kCorner, 0.5 * best.cost / count);
+  const double variance = std::max(kCorner * kCorner, 0.5 * fit->cost / count);
   const double apart =
-      log(Matrix3<double>(other.pose.rotation * best.pose.rotation.transpose())).norm();
-  if (apart > kSame && other.cost - best.cost < 2.0 * kClear * variance) {
+      log(Matrix3<double>(fit->other.rotation * fit->pose.rotation.transpose())).norm();
+  if (apart > kSame && fit->other_cost - fit->cost < 2.0 * kClear * variance) {
     return {std::nullopt, rms,
             "its pose is ambiguous: two poses " +
                 detail::one_digit(apart * 180.0 / std::numbers::pi) +
                 " degrees apart fit alike; tilt it, let it be larger in the image, or use more "
                 "corners"};
   }
-  const Pose<double> camera_T_turned{turn.transpose(), Vector3<double>::Zero()};
-  return {camera_T_turned * best.pose, rms, ""};
+  return {fit->pose, rms, ""};
 }
 
 }  // namespace kinecal

@@ -25,6 +25,23 @@ struct TargetPose {
   std::string fault;                            ///< why there is no pose; empty if there is one
 };
 
+/// The two poses that fit a target.
+struct TargetFit {
+  Pose<double> pose;        ///< camera_T_target of the better one
+  double cost = 0.0;        ///< its sum of squares
+  Pose<double> other;       ///< the minimum near its reflection; the same if there is no second one
+  double other_cost = 0.0;  ///< its sum of squares
+};
+
+/// Fits the poses of a target.  Four corners in a plane of constant z must be among its corners.
+/// @param points      (3) each, metres, in the target
+/// @param directions  (3) each, of any length, in the camera's optical frame: where it sees them
+/// @param focal       unit of the sums: pixels per radian
+/// @returns  nullopt if the corners do not determine it
+[[nodiscard]] std::optional<TargetFit> fit_target(std::vector<Vector3<double>> points,
+                                                  const std::vector<Vector3<double>>& directions,
+                                                  double focal);
+
 /// The pose of a target.  Four corners in a plane of constant z must be among its corners.
 /// @param corners  of one target
 /// @param camera   of the view; raw if it has a distortion, else rectified

@@ -62,13 +62,13 @@ inline void warn_of_unusable(const Config& config, std::span<const Sample> sampl
 inline void warn_of_far_points(const Config& config, std::span<const Sample> samples,
                                Diagnostics& diagnostics) {
   constexpr double kFar = 100.0;
-  const std::set<std::string> in_pixels = models_where(
-      config, [](const AnySensor& sensor) { return !sensor.delivers(Quantity::point); });
+  const std::set<std::string> in_metres = models_where(
+      config, [](const AnySensor& sensor) { return sensor.delivers(Quantity::point); });
   std::size_t count = 0;
   std::string first;
   for (const Sample& sample : samples) {
     for (const Observation& seen : sample.observations) {
-      if (in_pixels.contains(seen.sensor)) continue;
+      if (!in_metres.contains(seen.sensor)) continue;
       for (const Feature& feature : seen.features) {
         const double distance = feature.point.norm();
         if (!(std::isfinite(distance) && distance > kFar)) continue;

@@ -1,3 +1,6 @@
+#include <fstream>
+
+#include "kinecal/files/samples/write_samples.hpp"
 // Cameras alone: photographs of a board, and nothing else.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -88,18 +91,19 @@ struct Rig {
   std::vector<Sample> samples;  ///< nothing is known of the cameras but the size of their images
 };
 
-Rig two_fisheyes(double noise = 0.0) {
+Rig two_cameras(const std::string& lens, double focal, const std::vector<double>& left_d,
+                const std::vector<double>& right_d, double noise) {
   Rig rig;
   CameraInfo &left = rig.left, &right = rig.right;
   left.width = right.width = 1280;
   left.height = right.height = 960;
-  left.distortion_model = right.distortion_model = "equidistant";
-  left.k = {420, 0, 645, 0, 422, 470, 0, 0, 1};
-  right.k = {500, 0, 630, 0, 498, 490, 0, 0, 1};
-  left.d = {0.02, -0.004, 1e-3, -1e-4};
-  right.d = {-0.01, 0.003, 0.0, 0.0};
+  left.distortion_model = right.distortion_model = lens;
+  left.k = {focal, 0, 645, 0, focal + 2.0, 470, 0, 0, 1};
+  right.k = {focal + 80.0, 0, 630, 0, focal + 78.0, 490, 0, 0, 1};
+  left.d = left_d;
+  right.d = right_d;
   const Pose<double> left_T_right{exp(Vector3<double>(0.02, 0.4, -0.03)), {0.12, -0.01, 0.02}};
-  const auto camera = any_built_in(lens_camera("equidistant", ImageKind::raw));
+  const auto camera = any_built_in(lens_camera(lens, ImageKind::raw));
   SeededRandom random(3);
   while (rig.samples.size() < 30) {
     const Pose<double> left_T_board{
@@ -119,12 +123,15 @@ Rig two_fisheyes(double noise = 0.0) {
         const Vector3<double> p = pose * Vector3<double>(0.06 * (i % 8), 0.06 * (i / 8), 0.0);
         const Eigen::Vector2d pixel = camera->predict(p, settings);
         const double u = noise * random.normal(), v = noise * random.normal();
-        eye.features.push_back({name, {pixel.x() + u, pixel.y() + v, 0.0}});
+        const bool is_inside =
+            pixel.x() > 0.0 && pixel.x() < info.width && pixel.y() > 0.0 && pixel.y() < info.height;
+        if (is_inside)
+          eye.features.push_back({name, {pixel.x() + u, pixel.y() + v, 0.0}, {}, {}, i});
       }
       sample.observations.push_back(eye);
     };
     for (int i = 0; i < 48; ++i) {
-      board.features.push_back({"board", {0.06 * (i % 8), 0.06 * (i / 8), 0.0}});
+      board.features.push_back({"board", {0.06 * (i % 8), 0.06 * (i / 8), 0.0}, {}, {}, i});
     }
     sample.observations.push_back(board);
     see("left", left, left_T_board);
@@ -132,6 +139,11 @@ Rig two_fisheyes(double noise = 0.0) {
     rig.samples.push_back(sample);
   }
   return rig;
+}
+
+Rig two_fisheyes(double noise = 0.0) {
+  return two_cameras("equidistant", 420.0, {0.02, -0.004, 1e-3, -1e-4}, {-0.01, 0.003, 0.0, 0.0},
+                     noise);
 }
 
 /// The truth is found from pixels alone.
@@ -169,6 +181,24 @@ TEST(CamerasAlone, TheLensesOfARigAreFoundByEvidence) {
   EXPECT_NEAR(rig.value("right_joint_x"), 0.12, 5e-4);
 }
 
+/// An ordinary lens gets the model that all programs read, without a coefficient that it does not need, even if a
+/// fisheye with fewer of them fits as well.
+TEST(CamerasAlone, AnOrdinaryLensIsPlumbBob) {
+  const auto [left, right, samples] = two_cameras("plumb_bob", 900.0, {-0.03, 0.01, 0.0, 0.0, 0.0},
+                                                  {-0.28, 0.09, 1e-3, 0.0, 0.0}, 0.2);
+  Cameras rig(initial_cameras({"left", "right"}), samples);
+  ASSERT_THAT(rig.diagnostics.errors, IsEmpty());
+  ASSERT_TRUE(rig.result.converged);
+  EXPECT_EQ(rig.config.steps.front().models[1].lens, "plumb_bob");
+  EXPECT_EQ(rig.config.steps.front().models[2].lens, "plumb_bob");
+  EXPECT_EQ(rig.info("left").d.at(4), 0.0);
+  EXPECT_EQ(rig.info("right").d.at(4), 0.0);
+  EXPECT_NEAR(rig.info("right").d.at(0), -0.28, 0.02);
+  EXPECT_THAT(rig.diagnostics.notes, ElementsAre(HasSubstr("taken as plumb_bob without k3"),
+                                                 HasSubstr("taken as plumb_bob without k3"),
+                                                 HasSubstr("no camera saw four corners")));
+}
+
 TEST(CamerasAlone, WhatCannotBeIsSaid) {
   const std::string text = cameras_config({"camera"}, "equidistant", "k1");
   const auto errors = [](const std::string& config, std::vector<Sample> samples) {
@@ -179,6 +209,11 @@ TEST(CamerasAlone, WhatCannotBeIsSaid) {
   one.observations = {{"board", {{"board", {0, 0, 0}}, {"board", {0.1, 0, 0}}}, {}},
                       {"camera", {{"camera", {10, 20, 0}}, {"camera", {30, 20, 0}}}, CameraInfo{}}};
   EXPECT_THAT(errors(text, {one}), ElementsAre(HasSubstr("no view of 'board' has four corners")));
+  Sample misnamed = one;
+  misnamed.observations[0].sensor = "arm";
+  EXPECT_THAT(errors(text, {misnamed}),
+              ElementsAre(HasSubstr(
+                  "model 'board': no sample has a sensor of that name; did you mean 'arm'?")));
   std::string held = text;
   held.replace(held.find("camera_fx, "), 11, "");
   EXPECT_THAT(errors(held, {one}), ElementsAre(HasSubstr("its intrinsics are not known; free")));

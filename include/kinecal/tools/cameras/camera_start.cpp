@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "kinecal/capture/homography.hpp"
+#include "kinecal/capture/target_pose.hpp"
 #include "kinecal/geometry/median.hpp"
 
 namespace kinecal {
@@ -30,20 +31,39 @@ Eigen::Vector2d CameraStart::pixel(const Vector3<double>& point) const {
   return center + lens.focal * lens.profile(angle) / beside * point.head<2>();
 }
 
+namespace detail {
+namespace {
+
+/// The corners of a view that a camera can see, and where.
+struct SeenCorners {
+  SeenCorners(const TargetView& view, const PixelDirection& direction) {
+    for (std::size_t i = 0; i < view.pixels.size(); ++i) {
+      const Vector3<double> to = direction(view.pixels[i]);
+      if (!to.allFinite()) continue;
+      plane.push_back(view.plane[i]);
+      directions.push_back(to);
+    }
+  }
+  std::vector<Eigen::Vector2d> plane;
+  std::vector<Vector3<double>> directions;
+};
+
+}  // namespace
+}  // namespace detail
+
 std::optional<Pose<double>> CameraStart::pose(const TargetView& view) const {
-  return pose_of_view(view, [this](const Eigen::Vector2d& pixel) { return direction(pixel); });
+  const detail::SeenCorners seen(view,
+                                 [this](const Eigen::Vector2d& pixel) { return direction(pixel); });
+  return seen.plane.size() < 4 ? std::nullopt : plane_pose(seen.plane, seen.directions);
 }
 
 std::optional<Pose<double>> pose_of_view(const TargetView& view, const PixelDirection& direction) {
-  std::vector<Eigen::Vector2d> plane;
-  std::vector<Vector3<double>> directions;
-  for (std::size_t i = 0; i < view.pixels.size(); ++i) {
-    const Vector3<double> to = direction(view.pixels[i]);
-    if (!to.allFinite()) continue;
-    plane.push_back(view.plane[i]);
-    directions.push_back(to);
-  }
-  return directions.size() < 4 ? std::nullopt : plane_pose(plane, directions);
+  const detail::SeenCorners seen(view, direction);
+  if (seen.plane.size() < 4) return std::nullopt;
+  std::vector<Vector3<double>> points;
+  for (const Eigen::Vector2d& p : seen.plane) points.emplace_back(p.x(), p.y(), 0.0);
+  const auto fit = fit_target(std::move(points), seen.directions, 1.0);
+  return fit ? std::optional(fit->pose) : std::nullopt;
 }
 
 double farthest_degrees(std::span<const TargetView> views, const PixelDirection& direction) {

@@ -29,7 +29,7 @@ struct TargetView {
 /// What a pixel (2) shows: (3) of any length in the optical frame; not a number where the lens sees nothing.
 using PixelDirection = std::function<Vector3<double>(const Eigen::Vector2d& pixel)>;
 
-/// camera_T_target of a view; nullopt if its corners do not determine it.
+/// camera_T_target of a view, fitted; nullopt if its corners do not determine it.
 [[nodiscard]] std::optional<Pose<double>> pose_of_view(const TargetView& view,
                                                        const PixelDirection& direction);
 
@@ -49,7 +49,7 @@ struct CameraStart {
   [[nodiscard]] Vector3<double> direction(const Eigen::Vector2d& pixel) const;
   /// The pixel of a point (3).
   [[nodiscard]] Eigen::Vector2d pixel(const Vector3<double>& point) const;
-  /// As above.
+  /// camera_T_target of a view by a homography; nullopt if its corners do not determine it.
   [[nodiscard]] std::optional<Pose<double>> pose(const TargetView& view) const;
 };
 

@@ -1,10 +1,14 @@
 // Chooses the lens of a camera by evidence (`lens: auto`): the simplest one whose error on views that were held out
 // no other lens beats significantly.
 //
+// The simplest one is plumb_bob without k3, then plumb_bob: ordinary cameras have it, and all programs read it.  Then
+// double_sphere, equidistant, rational_polynomial and thin_prism, by the number of their coefficients.
+//
 // Each lens is calibrated with all of its coefficients.  For each of five folds it is fitted to the other samples;
 // each sample that was held out gets the mean square of its residuals, its own pose fitted to it.  One lens beats
-// another one if its mean squares are smaller, on average over samples, by more than 1.645 standard errors.  A lens that
-// folds over where features are, or does not fit at all, is out.
+// another one if its mean squares, or their logarithms, are smaller on average over samples by more than 1.645 standard
+// errors.  Each camera is tried alone.  A lens that
+// folds over where features are, does not fit at all, or has a parameter that the samples do not determine, is out.
 // Source: Vuong, Likelihood Ratio Tests for Model Selection and Non-Nested Hypotheses, 1989.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

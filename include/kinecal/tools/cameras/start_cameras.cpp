@@ -14,8 +14,10 @@
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/sensors/lens.hpp"
+#include "kinecal/tools/cameras/camera_checks.ipp"
 #include "kinecal/tools/cameras/camera_places.ipp"
 #include "kinecal/tools/cameras/single_camera.hpp"
+#include "kinecal/tools/cameras/target_poses.ipp"
 
 namespace kinecal {
 
@@ -30,30 +32,6 @@ namespace {
     if (seen != nullptr && seen->camera) return &*seen->camera;
   }
   return nullptr;
-}
-
-/// Reports images of two sizes.
-/// @returns  false if there are
-[[nodiscard]] bool check_sizes(const ModelConfig& camera, const std::vector<Sample>& samples,
-                               Diagnostics& diagnostics) {
-  const Sample* first = nullptr;
-  const auto size = [&](const Sample& sample) {
-    const CameraInfo& info = *sample.observation(camera.name)->camera;
-    return std::pair(info.width, info.height);
-  };
-  for (const Sample& sample : samples) {
-    const Observation* seen = sample.observation(camera.name);
-    if (seen == nullptr || !seen->camera) continue;
-    if (first == nullptr) first = &sample;
-    if (size(sample) == size(*first)) continue;
-    diagnostics.error(
-        camera.place,
-        fmt::format("camera '{}': images of two sizes: {}x{} at {}, {}x{} at {}", camera.name,
-                    size(*first).first, size(*first).second, first->source, size(sample).first,
-                    size(sample).second, sample.source));
-    return false;
-  }
-  return true;
 }
 
 /// The size of a camera's image: as recorded, or as far as corners lie around its middle.
@@ -109,32 +87,13 @@ void set_info(const std::string& camera, const CameraInfo& found, std::vector<Sa
   });
 }
 
-/// The poses of targets in the samples.
-void set_poses(const Config& config, const Robot& robot, const std::vector<SeenTarget>& seen,
-               const std::map<std::string, Pose<double>>& cameras, std::vector<Sample>& samples) {
-  for (std::size_t s = 0; s < samples.size(); ++s) {
-    for (const SeenTarget& of : seen) {
-      Sample& sample = samples[s];
-      const auto pose = of.poses.find(s);
-      if (pose == of.poses.end() || sample.poses.contains(of.pair.joint)) continue;
-      const auto placed = cameras.find(of.pair.camera->name);
-      const std::optional<Pose<double>> camera =
-          placed != cameras.end() ? placed->second
-                                  : pose_of_link(config, robot, of.pair.camera->frame, sample);
-      const Joint& joint = robot.joint(of.pair.joint);
-      const auto parent = pose_of_link(config, robot, joint.parent, sample);
-      if (!camera || !parent) continue;
-      sample.poses[of.pair.joint] = (*parent * joint.origin).inverse() * *camera * pose->second;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace detail
 
 void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samples,
                    Diagnostics& diagnostics) {
   const std::vector<detail::TargetPair> pairs = detail::target_pairs(config, robot);
+  if (!detail::check_sensors(config, pairs, samples, diagnostics)) return;
   std::vector<detail::SeenTarget> seen;
   for (const detail::TargetPair& pair : pairs) {
     std::vector<TargetView> views;
@@ -183,6 +142,7 @@ void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samp
                     "record the target where both see it, or give its frame an initial value",
                     of.pair.camera->name));
   }
+  if (diagnostics.errors.empty()) detail::drop_unplaced(pairs, samples, diagnostics);
 }
 
 }  // namespace kinecal

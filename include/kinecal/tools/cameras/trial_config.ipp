@@ -34,9 +34,12 @@ namespace kinecal::detail {
 }
 
 /// The configuration with a lens whose intrinsics are free.
+/// @param held  a coefficient that is not; empty: all are
 [[nodiscard]] inline Config with_lens(Config config, const ModelConfig& camera,
-                                      const std::string& lens) {
+                                      const std::string& lens, const std::string& held) {
   const std::set<std::string> others = names_with_lenses(camera);
+  std::set<std::string> free = names_with_lens(camera, lens);
+  if (!held.empty()) free.erase(parameter_name(camera.param_name, held));
   for (StepConfig& step : config.steps) {
     bool has_camera = false;
     for (ModelConfig& model : step.models) {
@@ -47,7 +50,7 @@ namespace kinecal::detail {
     }
     if (!has_camera) continue;
     std::erase_if(step.free_params, [&](const auto& free) { return others.contains(free.name); });
-    for (const std::string& name : names_with_lens(camera, lens)) {
+    for (const std::string& name : free) {
       step.free_params.push_back({name, camera.place});
     }
   }
@@ -100,9 +103,9 @@ namespace kinecal::detail {
 inline void take_camera(const std::string& camera, const std::vector<Sample>& from,
                         std::vector<Sample>& samples) {
   for (std::size_t s = 0; s < samples.size(); ++s) {
-    for (std::size_t i = 0; i < samples[s].observations.size(); ++i) {
-      if (samples[s].observations[i].sensor != camera) continue;
-      samples[s].observations[i].camera = from[s].observations[i].camera;
+    const Observation* found = from[s].observation(camera);
+    for (Observation& seen : samples[s].observations) {
+      if (seen.sensor == camera && found != nullptr) seen.camera = found->camera;
     }
   }
 }

@@ -12,14 +12,36 @@
 
 namespace kinecal::detail {
 
+/// A mean, and whether it is above zero for certain.
+class SureMean {
+ public:
+  void add(double value) {
+    sum_ += value;
+    squared_ += value * value;
+    count_ += 1.0;
+  }
+  [[nodiscard]] bool is_positive() const {
+    if (count_ < 3.0) return false;
+    const double mean = sum_ / count_, variance = squared_ / count_ - mean * mean;
+    constexpr double kSure = 1.645;  // standard errors: chance is below 5 %
+    return mean > kSure * std::sqrt(std::max(0.0, variance) / (count_ - 1.0));
+  }
+
+ private:
+  double sum_ = 0.0, squared_ = 0.0, count_ = 0.0;
+};
+
 /// A lens that was tried.
 struct TriedLens {
   std::string name;
+  std::string held;  ///< a coefficient that is zero and held; empty: none
   Config config;
   std::vector<Sample> samples;
   std::vector<double> squares;  ///< held_out_squares()
   std::string fault;            ///< why it is out; empty: it is not
 
+  /// "plumb_bob without k3"
+  [[nodiscard]] std::string text() const { return held.empty() ? name : name + " without " + held; }
   /// Root of the mean of the squared distances of features, pixels.
   [[nodiscard]] double error() const {
     double sum = 0.0, count = 0.0;
@@ -29,20 +51,17 @@ struct TriedLens {
     }
     return count > 0.0 ? std::sqrt(2.0 * sum / count) : 0.0;  // of both coordinates
   }
-  /// True if its error is significantly smaller than that of another one.
+  /// True if its error is significantly smaller than that of another one: by the differences of mean squares, or by
+  /// their ratios, which one view that is far off under the other lens does not blur.
   [[nodiscard]] bool beats(const TriedLens& other) const {
-    double sum = 0.0, squared = 0.0, count = 0.0;
+    if (!(error() < other.error())) return false;
+    SureMean differences, ratios;
     for (std::size_t s = 0; s < squares.size(); ++s) {
       if (!(squares[s] > 0.0 && other.squares[s] > 0.0)) continue;
-      const double d = other.squares[s] - squares[s];
-      sum += d;
-      squared += d * d;
-      count += 1.0;
+      differences.add(other.squares[s] - squares[s]);
+      ratios.add(std::log(other.squares[s] / squares[s]));
     }
-    if (count < 3.0) return false;
-    const double mean = sum / count, variance = squared / count - mean * mean;
-    constexpr double kSure = 1.645;  // standard errors: chance is below 5 %
-    return mean > kSure * std::sqrt(std::max(0.0, variance) / (count - 1.0));
+    return differences.is_positive() || ratios.is_positive();
   }
 };
 
