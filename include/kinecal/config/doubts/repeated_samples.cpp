@@ -41,6 +41,8 @@ namespace kinecal::detail {
   }
   std::map<std::vector<long long>, std::vector<std::size_t>> by_pose;
   for (std::size_t s = 0; s < count; ++s) by_pose[poses[s]].push_back(s);
+  if (by_pose.size() > 1)
+    by_pose.erase(std::vector<long long>{});  // samples that have no pose are not of one pose
   std::vector<std::vector<std::size_t>> groups;
   for (auto& [pose, of_pose] : by_pose) groups.push_back(std::move(of_pose));
   return groups;

@@ -74,6 +74,19 @@ void set_info(const std::string& camera, const CameraInfo& found, std::vector<Sa
   return poses;
 }
 
+/// Takes away poses at which the camera does not see the corners that it saw: of a few corners, nearly on a line.
+void drop_unseen(const TargetPair& pair, const CameraInfo& info,
+                 const std::vector<TargetView>& views, std::map<std::size_t, Pose<double>>& poses) {
+  const Lens lens(info, pair.camera->image);
+  std::erase_if(poses, [&](const auto& of) {
+    return std::any_of(views[of.first].plane.begin(), views[of.first].plane.end(),
+                       [&](const Eigen::Vector2d& p) {
+                         const Vector3<double> at(p.x(), p.y(), 0.0);
+                         return !lens.project(of.second * at).allFinite();
+                       });
+  });
+}
+
 /// True if all intrinsics of a camera are free in some step.
 [[nodiscard]] bool has_free_intrinsics(const Config& config, const ModelConfig& camera) {
   const std::shared_ptr<const AnySensor> sensor = sensor_of(camera);
@@ -128,6 +141,7 @@ void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samp
         if (single->poses[s]) of.poses.emplace(s, *single->poses[s]);
       }
     }
+    detail::drop_unseen(pair, *detail::info_of(pair.camera->name, samples), views, of.poses);
     seen.push_back(std::move(of));
   }
   const auto cameras = detail::place_cameras(config, robot, seen);

@@ -70,10 +70,11 @@ inline void drop_unplaced(const std::vector<TargetPair>& pairs, std::vector<Samp
     if (was_seen) dropped.add(s);
   }
   if (dropped.count == 0) return;
-  diagnostics.note(place_of(samples, dropped.first),
-                   fmt::format("no camera saw four corners, so nothing says where the target was: "
-                               "left out{}",
-                               dropped.others()));
+  diagnostics.note(
+      place_of(samples, dropped.first),
+      fmt::format("no camera shows where the target was, by four corners or more that are "
+                  "not nearly on a line: left out{}",
+                  dropped.others()));
 }
 
 }  // namespace kinecal::detail
