@@ -23,8 +23,7 @@ class SureMean {
   [[nodiscard]] bool is_positive() const {
     if (count_ < 3.0) return false;
     const double mean = sum_ / count_, variance = squared_ / count_ - mean * mean;
-    constexpr double kSure =
-        2.326;  // standard errors: chance is below 1 %, and there are several lenses
+    constexpr double kSure = 1.645;  // standard errors: chance is below 5 %
     return mean > kSure * std::sqrt(std::max(0.0, variance) / (count_ - 1.0));
   }
 
