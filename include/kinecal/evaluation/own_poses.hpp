@@ -10,7 +10,8 @@
 // the others beside unknown poses) and the effect of leaving a sample out follow without a special case, the solver's
 // problem has a constant size, and the time is linear in the samples.
 //
-// A pose is fitted by Levenberg-Marquardt steps, from where it was in the best evaluation so far.  Directions that the
+// A pose is fitted by Levenberg-Marquardt steps, from where it was in the best evaluation so far, or from where
+// (L^T W L)^+ L^T W J of the last one says that it goes.  Directions that the
 // features of a sample do not determine stay as they are.
 // Source: Golub and Pereyra, Separable nonlinear least squares: the variable projection method and its
 // applications, 2003; Kaufman, A variable projection method for solving separable nonlinear least squares problems,
@@ -93,11 +94,24 @@ class OwnPosesEvaluator final : public AnyEvaluator {
   void place(std::size_t sample);
   /// The normal equations of each sample at its current poses.
   [[nodiscard]] std::vector<detail::OwnPoseSums> sums(ParameterValues values, Losses losses);
+  /// The same at these poses, which become the current ones.
+  [[nodiscard]] std::vector<detail::OwnPoseSums> sums_at(Poses poses, ParameterValues values,
+                                                         Losses losses);
+  /// Begins at the poses of the best evaluation, or where the last derivatives say that they go, whichever is better in
+  /// a sample.
+  [[nodiscard]] std::vector<detail::OwnPoseSums> start(ParameterValues values, Losses losses);
   /// Fits all poses at these values.
   void fit(ParameterValues values, Losses losses);
   /// The rows at the fitted poses, with their derivatives by the free parameters: J'.
   [[nodiscard]] std::optional<UndefinedResidual> collect(ParameterValues values, Losses losses,
                                                          Linearization at);
+
+  /// Fitted poses, and how they change with the others.
+  struct KnownPoses {
+    Poses poses;
+    std::vector<Eigen::MatrixXd> by_free;  ///< (poses x free) of each sample, its sign reversed
+    std::vector<double> values;            ///< at which they were fitted, of all parameters
+  };
 
   const BasicProblem<S>& problem_;
   FreeSet free_, own_, all_;
@@ -106,6 +120,7 @@ class OwnPosesEvaluator final : public AnyEvaluator {
   std::vector<Place> places_;                            ///< of each sample
   std::unique_ptr<Evaluator<S>> by_own_, by_all_;
   Poses now_, best_;
+  KnownPoses known_;
   double best_cost_ = std::numeric_limits<double>::infinity();
   std::vector<Rows> rows_;  ///< of the last evaluation
 };

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kinecal/evaluation/own_poses.hpp"
+#include "kinecal/evaluation/own_poses_fit.ipp"
 #include "kinecal/evaluation/own_poses_parts.ipp"
 
 namespace kinecal {
@@ -36,72 +37,6 @@ OwnPosesEvaluator<S>::OwnPosesEvaluator(const BasicProblem<S>& problem, const Fr
   }
   by_own_ = std::make_unique<Evaluator<S>>(problem, batches_, own_, 1);
   by_all_ = std::make_unique<Evaluator<S>>(problem, batches_, all_, 1);
-}
-
-template <class S>
-void OwnPosesEvaluator<S>::place(std::size_t sample) {
-  const Place& place = places_[sample];
-  for (const detail::PosePlace& of : offsets_[place.layout]) {
-    const std::array<double, 6> at = floating_positions(now_[sample][of.frame]);
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      const bool turns = i >= 3;  // the numbers of JointStates
-      batches_[place.layout].set(place.row, of.offsets[i], turns ? std::cos(at[i]) : at[i]);
-      batches_[place.layout].set(place.row, of.offsets[i] + 1, turns ? std::sin(at[i]) : 0.0);
-    }
-  }
-}
-
-template <class S>
-std::vector<detail::OwnPoseSums> OwnPosesEvaluator<S>::sums(ParameterValues values, Losses losses) {
-  std::vector<detail::OwnPoseSums> all(now_.size(), detail::OwnPoseSums(own_.size()));
-  (void)by_own_->evaluate(values, true, [&](int t, int sample, const TermResiduals& rows) {
-    detail::OwnPoseSums& of = all[static_cast<std::size_t>(sample)];
-    const Eigen::VectorXd w2 = detail::squared_weights(problem_.term(t), rows, losses, of.cost);
-    const Eigen::MatrixXd weighted = w2.asDiagonal() * rows.jacobian;
-    of.hessian.noalias() += rows.jacobian.transpose() * weighted;
-    of.gradient.noalias() += weighted.transpose() * rows.residual;
-    of.rows += rows.residual.size();
-  });
-  return all;
-}
-
-template <class S>
-void OwnPosesEvaluator<S>::fit(ParameterValues values, Losses losses) {
-  now_ = best_;
-  for (std::size_t s = 0; s < now_.size(); ++s) place(s);
-  std::vector<detail::OwnPoseSums> at = sums(values, losses);
-  std::vector<detail::Damping> damping(now_.size());
-  std::vector<bool> moves(now_.size(), true);
-  constexpr int kMostSteps = 100;
-  constexpr double kSettled = 1e-14;  // of the cost
-  for (int step = 0; step < kMostSteps; ++step) {
-    const Poses before = now_;
-    std::vector<double> promised(now_.size(), 0.0);
-    for (std::size_t s = 0; s < now_.size(); ++s) {
-      if (!moves[s]) continue;
-      const Eigen::VectorXd change = at[s].step(damping[s].value);
-      promised[s] = at[s].decrease(change);
-      moves[s] = promised[s] > kSettled * at[s].cost && damping[s].value < detail::Damping::kMost;
-      if (!moves[s]) continue;
-      for (std::size_t f = 0; f < now_[s].size(); ++f) {
-        now_[s][f] = detail::moved(now_[s][f], change.segment(6 * static_cast<Eigen::Index>(f), 6));
-      }
-      place(s);
-    }
-    if (std::find(moves.begin(), moves.end(), true) == moves.end()) return;
-    std::vector<detail::OwnPoseSums> there = sums(values, losses);
-    for (std::size_t s = 0; s < now_.size(); ++s) {
-      if (!moves[s]) continue;
-      const bool is_better = there[s].rows == at[s].rows && there[s].cost <= at[s].cost;
-      damping[s].update(is_better ? (at[s].cost - there[s].cost) / promised[s] : -1.0);
-      if (is_better) {
-        at[s] = std::move(there[s]);
-      } else {
-        now_[s] = before[s];
-        place(s);
-      }
-    }
-  }
 }
 
 template <class S>
@@ -138,6 +73,7 @@ std::optional<UndefinedResidual> OwnPosesEvaluator<S>::collect(ParameterValues v
     of.residuals.used = lengths.cwiseProduct(of.weights);
     of.residuals.jacobian = jacobian.leftCols(free) - poses * by_both[s];
   }
+  known_ = {now_, std::move(by_both), {values.begin(), values.end()}};
   return undefined;
 }
 

@@ -62,10 +62,13 @@ namespace detail {
   return places;
 }
 
-/// A pose after a step.
-/// @param step  (6) translation and rotation vector, in the moved frame
-[[nodiscard]] inline Pose<double> moved(const Pose<double>& pose, const Eigen::VectorXd& step) {
-  return pose * Pose<double>{exp(Vector3<double>(step.tail<3>())), step.head<3>()};
+/// Moves poses.
+/// @param step  (6 of each) translation and rotation vector, in the moved frame
+inline void move(std::vector<Pose<double>>& poses, const Eigen::VectorXd& step) {
+  for (std::size_t f = 0; f < poses.size(); ++f) {
+    const auto by = step.segment<6>(6 * static_cast<Eigen::Index>(f));
+    poses[f] = poses[f] * Pose<double>{exp(Vector3<double>(by.tail<3>())), by.head<3>()};
+  }
 }
 
 /// The square of each row's weight, its loss included.

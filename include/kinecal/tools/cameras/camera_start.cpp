@@ -66,6 +66,20 @@ std::optional<Pose<double>> pose_of_view(const TargetView& view, const PixelDire
   return fit ? std::optional(fit->pose) : std::nullopt;
 }
 
+std::vector<TargetView> telling_views(std::span<const TargetView> views, std::size_t most) {
+  std::vector<const TargetView*> order;
+  for (const TargetView& view : views) order.push_back(&view);
+  std::stable_sort(order.begin(), order.end(), [](const TargetView* a, const TargetView* b) {
+    return a->pixels.size() > b->pixels.size();
+  });
+  std::vector<TargetView> some;
+  const std::size_t step = std::max<std::size_t>(1, order.size() / most);
+  for (std::size_t i = 0; i < order.size() && some.size() < most; i += step) {
+    some.push_back(*order[i]);
+  }
+  return some;
+}
+
 double farthest_degrees(std::span<const TargetView> views, const PixelDirection& direction) {
   double most = 0.0;
   for (const TargetView& view : views) {
@@ -94,22 +108,6 @@ void add_misses(const CameraStart& camera, const TargetView& view, std::vector<d
   }
 }
 
-/// Some views, those with the most corners first.
-[[nodiscard]] std::vector<TargetView> telling_views(std::span<const TargetView> views) {
-  constexpr std::size_t kMost = 16;
-  std::vector<const TargetView*> order;
-  for (const TargetView& view : views) order.push_back(&view);
-  std::stable_sort(order.begin(), order.end(), [](const TargetView* a, const TargetView* b) {
-    return a->pixels.size() > b->pixels.size();
-  });
-  std::vector<TargetView> some;
-  const std::size_t step = std::max<std::size_t>(1, order.size() / kMost);
-  for (std::size_t i = 0; i < order.size() && some.size() < kMost; i += step) {
-    some.push_back(*order[i]);
-  }
-  return some;
-}
-
 /// A rough camera, judged by some views.
 [[nodiscard]] CameraStart judged(RoundLens lens, const Eigen::Vector2d& center,
                                  std::span<const TargetView> views) {
@@ -125,7 +123,8 @@ void add_misses(const CameraStart& camera, const TargetView& view, std::vector<d
 
 std::optional<CameraStart> camera_start(std::span<const TargetView> views, double width,
                                         double height) {
-  const std::vector<TargetView> some = detail::telling_views(views);
+  constexpr std::size_t kEnough = 16;
+  const std::vector<TargetView> some = telling_views(views, kEnough);
   const Eigen::Vector2d center(0.5 * (width - 1.0), 0.5 * (height - 1.0));
   const double size = std::max(width, height);
   std::optional<CameraStart> best;

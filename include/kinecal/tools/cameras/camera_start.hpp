@@ -33,6 +33,11 @@ using PixelDirection = std::function<Vector3<double>(const Eigen::Vector2d& pixe
 [[nodiscard]] std::optional<Pose<double>> pose_of_view(const TargetView& view,
                                                        const PixelDirection& direction);
 
+/// Some views, those with the most corners first.
+/// @param most  how many of them
+[[nodiscard]] std::vector<TargetView> telling_views(std::span<const TargetView> views,
+                                                    std::size_t most);
+
 /// The angle from the axis at which the farthest corner is seen, degrees.
 [[nodiscard]] double farthest_degrees(std::span<const TargetView> views,
                                       const PixelDirection& direction);

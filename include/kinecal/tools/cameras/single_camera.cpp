@@ -124,17 +124,23 @@ std::optional<SingleCamera> single_camera(std::span<const TargetView> views, dou
   info.d = lens_start(Equidistant::kName, start->lens, start->most_degrees);
   const double f = start->lens.focal;
   info.k = {f, 0, start->center.x(), 0, f, start->center.y(), 0, 0, 1};
+  constexpr std::size_t kEnough = 32;  // views for a start
+  const std::vector<TargetView> some = telling_views(views, kEnough);
   detail::SeenByFisheye camera{info, {}};
-  for (const TargetView& view : views) camera.poses.push_back(start->pose(view));
+  for (const TargetView& view : some) camera.poses.push_back(start->pose(view));
   constexpr int kMostRounds = 5;
   for (int round = 0; round < kMostRounds; ++round) {
-    detail::fit_fisheye(views, camera);
-    if (!detail::mend_poses(views, camera)) break;
+    detail::fit_fisheye(some, camera);
+    if (!detail::mend_poses(some, camera)) break;
   }
   info = camera.info;
   const Lens fisheye(info, ImageKind::raw);
-  const double angle = farthest_degrees(
-      views, [&](const Eigen::Vector2d& pixel) { return fisheye.ray(pixel.x(), pixel.y()); });
+  const PixelDirection ray = [&](const Eigen::Vector2d& pixel) {
+    return fisheye.ray(pixel.x(), pixel.y());
+  };
+  SingleCamera single;
+  for (const TargetView& view : views) single.poses.push_back(pose_of_view(view, ray));
+  const double angle = farthest_degrees(views, ray);
   constexpr double kNarrow = 50.0;  // degrees from the axis
   const std::string wanted(!lens.empty()     ? lens
                            : angle < kNarrow ? PlumbBob::kName
@@ -151,7 +157,8 @@ std::optional<SingleCamera> single_camera(std::span<const TargetView> views, dou
   info.distortion_model = distortion_model_of(wanted);
   info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   info.p = {info.k[0], 0, info.k[2], 0, 0, info.k[4], info.k[5], 0, 0, 0, 1, 0};
-  return SingleCamera{info, std::move(camera.poses)};
+  single.info = info;
+  return single;
 }
 
 }  // namespace kinecal
