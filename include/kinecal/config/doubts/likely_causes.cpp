@@ -35,13 +35,18 @@ constexpr double kExplainsScale = 0.25;
   const auto fit = [&](double x) {
     return solve_samples(solver, solver.config, with_scaled(samples, model, std::exp(x)));
   };
-  constexpr double kFirst = 0.1, kFurthest = 1.1, kEnough = 1e-3;
+  constexpr double kFirst = 0.1, kFurthest = 1.1, kEnough = 1e-3, kNothing = 1e-6;
   constexpr int kSteps = 8;
   double best = 0.0, step = kFirst;
   SolvedSamples at_best = now;
   for (int i = 0; i < kSteps && step > kEnough; ++i) {
-    const auto below = fit(best - step), above = fit(best + step);
-    if (!below || !above) return std::nullopt;
+    const auto above = fit(best + step);
+    if (!above) return std::nullopt;
+    if (i == 0 && std::abs(above->cost - now.cost) < kNothing * now.cost) {
+      return std::nullopt;  // no sample knows it, as where cameras alone see a board
+    }
+    const auto below = fit(best - step);
+    if (!below) return std::nullopt;
     const double curvature = below->cost - 2.0 * at_best.cost + above->cost;
     const double slope = 0.5 * (above->cost - below->cost);
     const double most = 4.0 * step;
