@@ -49,7 +49,7 @@ namespace kinecal::detail {
       model.image = ImageKind::raw;
     }
     if (!has_camera) continue;
-    std::erase_if(step.free_params, [&](const auto& free) { return others.contains(free.name); });
+    std::erase_if(step.free_params, [&](const auto& param) { return others.contains(param.name); });
     for (const std::string& name : free) {
       step.free_params.push_back({name, camera.place});
     }
