@@ -3,7 +3,6 @@
 #include "kinecal/trust/online.hpp"
 
 #include <limits>
-#include <stdexcept>
 
 #include "kinecal/trust/online_misfits.ipp"
 #include "kinecal/trust/online_moves.ipp"
@@ -14,9 +13,6 @@ OnlineCalibration::OnlineCalibration(MakeProblem make, const FreeSet& free, Para
                                      const FrameOnRobot& frame, const FrameOnRobot& in)
     : inside_(new Inside{std::move(make), free, {values.begin(), values.end()}, frame, in}) {
   inside_->problem->check(free);
-  if (!inside_->problem->own_poses().empty()) {
-    throw std::invalid_argument("poses that samples have of their own are not calibrated online");
-  }
   (void)detail::PoseDerivative(*inside_->problem, free, inside_->values, frame, in);
 }
 
@@ -44,6 +40,7 @@ const std::vector<double>& OnlineCalibration::values() const {
 std::optional<NextMove> OnlineCalibration::next_move(double step) const {
   const Inside& known = *inside_;
   if (known.samples.empty() || known.freedom <= 0) return std::nullopt;
+  if (!known.problem->own_poses().empty()) return std::nullopt;  // a person moves, too
   auto candidates = known.candidates(step);
   const auto trials = known.make();
   for (const auto& candidate : candidates) trials->add_sample(candidate.second);

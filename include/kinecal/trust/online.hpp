@@ -15,6 +15,8 @@
 // chance makes one as bad once in a million times and it is off by three times the noise.  So are
 // earlier samples that turn out not to fit, judged by the median sample's noise: a bad one among
 // the first few is indistinguishable from the others.
+// Samples may have poses of their own, such as that of a board that a person holds: each new sample brings the one
+// with which it begins.  The next move is not known then.
 // Source: Bar-Shalom et al., Estimation with Applications to Tracking and Navigation, 5.4
 // (innovations).
 // SPDX-License-Identifier: Apache-2.0
@@ -62,7 +64,6 @@ class OnlineCalibration {
   /// @param frame   whose pose is wanted: the gripper
   /// @param in      the frame in which it is given: the camera
   /// @throws RobotError             if a link does not exist
-  /// @throws std::invalid_argument  if samples have poses of their own: AnyProblem::give_own_poses()
   OnlineCalibration(MakeProblem make, const FreeSet& free, ParameterValues values,
                     const FrameOnRobot& frame, const FrameOnRobot& in);
   ~OnlineCalibration();

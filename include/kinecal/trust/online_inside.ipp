@@ -30,7 +30,7 @@ struct OnlineCalibration::Inside {
   int measured = 0;                              ///< numbers: see measured_numbers()
 
   void step_to_minimum(AnyEvaluator& evaluator);
-  void estimate_noise(double cost);
+  void estimate_noise(AnyEvaluator& evaluator, double cost);
   [[nodiscard]] double innovation(AnyEvaluator& evaluator, int& rows) const;
   void set_pose(OnlineState& state) const { set_pose(state, hessian); }
   void set_pose(OnlineState& state, const Eigen::MatrixXd& information) const;
@@ -46,6 +46,7 @@ namespace detail {
 struct SampleRows {
   Eigen::VectorXd residual = {};
   Eigen::MatrixXd jacobian = {};
+  double used = 0.0;  ///< of the rows, by the sample's own poses
 
   void append(const TermResiduals& rows, double weight) {
     const Eigen::Index before = residual.size(), added = rows.residual.size();
@@ -53,8 +54,18 @@ struct SampleRows {
     jacobian.conservativeResize(before + added, rows.jacobian.cols());
     residual.tail(added) = weight * rows.residual;
     jacobian.bottomRows(added) = weight * rows.jacobian;
+    if (rows.used.size() > 0) used += rows.used.sum();
   }
 };
+
+/// The number of residuals that the poses of samples use up.
+[[nodiscard]] inline double used_by_poses(AnyEvaluator& evaluator, ParameterValues values) {
+  double used = 0.0;
+  (void)evaluator.evaluate(values, false, [&](int, int, const TermResiduals& rows) {
+    if (rows.used.size() > 0) used += rows.used.sum();
+  });
+  return used;
+}
 
 }  // namespace detail
 
@@ -92,14 +103,16 @@ inline void OnlineCalibration::Inside::step_to_minimum(AnyEvaluator& evaluator) 
     if (before - at.cost <= kSettled * before) break;
   }
   hessian = at.hessian;
-  estimate_noise(at.cost);
+  estimate_noise(evaluator, at.cost);
+  problem->set_poses_of_samples(evaluator.own_poses(values));
 }
 
-inline void OnlineCalibration::Inside::estimate_noise(double cost) {
+inline void OnlineCalibration::Inside::estimate_noise(AnyEvaluator& evaluator, double cost) {
   const detail::Spectrum spectrum(hessian);
   const auto rank = static_cast<int>(spectrum.singular.size() - spectrum.null);
   const int of_priors = static_cast<int>(problem->priors().size()) * Prior::kRows;
-  freedom = problem->num_residuals() - of_priors - rank;
+  const double used = problem->own_poses().empty() ? 0.0 : detail::used_by_poses(evaluator, values);
+  freedom = problem->num_residuals() - of_priors - rank - static_cast<int>(std::lround(used));
   const double of_features = cost - detail::prior_equations(*problem, free, values).cost;
   noise2 = freedom > 0 ? std::max(0.0, 2.0 * of_features / freedom) : 0.0;
   measured = measured_numbers(*problem, values);
@@ -112,8 +125,8 @@ inline double OnlineCalibration::Inside::innovation(AnyEvaluator& evaluator, int
   (void)evaluator.evaluate(values, true, [&](int term, int sample, const TermResiduals& of_term) {
     if (sample == number) last.append(of_term, problem->term(term).weight);
   });
-  rows = static_cast<int>(last.residual.size());
-  if (rows == 0) return 0.0;
+  rows = static_cast<int>(last.residual.size()) - static_cast<int>(std::lround(last.used));
+  if (rows <= 0) return 0.0;
   const Eigen::MatrixXd covariance = noise2 * detail::Spectrum(hessian).pseudo_inverse();
   Eigen::MatrixXd expected = last.jacobian * covariance * last.jacobian.transpose();
   expected.diagonal().array() += noise2;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "kinecal/geometry/median.hpp"
@@ -44,10 +45,13 @@ inline double stated_square(const AnyProblem& problem) {
 inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator& evaluator) const {
   if (samples.size() < detail::kFewestToTest || freedom <= 0) return std::nullopt;
   std::vector<double> squares(samples.size(), 0.0), rows(samples.size(), 0.0);
+  double all = problem->num_residuals();
   (void)evaluator.evaluate(values, false, [&](int term, int sample, const TermResiduals& of_term) {
     const double weight = problem->term(term).weight;
     squares[static_cast<std::size_t>(sample)] += weight * weight * of_term.residual.squaredNorm();
-    rows[static_cast<std::size_t>(sample)] += static_cast<double>(of_term.residual.size());
+    const double used = of_term.used.size() > 0 ? of_term.used.sum() : 0.0;
+    rows[static_cast<std::size_t>(sample)] += static_cast<double>(of_term.residual.size()) - used;
+    all -= used;
   });
   std::vector<double> means;
   std::size_t worst = 0;
@@ -59,7 +63,7 @@ inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator
   if (means.empty()) return std::nullopt;
   // The median of chi-square is about n (1 - 2 / (9 n))^3; residuals of a fit are smaller than
   // noise.
-  const double n = rows[worst], all = problem->num_residuals();
+  const double n = rows[worst];
   const double usual =
       median_of(std::move(means)) / std::pow(1.0 - 2.0 / (9.0 * n), 3.0) * (all / freedom);
   if (!(usual > 0.0) || !(squares[worst] / n > detail::stated_square(*problem))) {
@@ -76,8 +80,11 @@ inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator
 inline void OnlineCalibration::Inside::leave_out(std::size_t sample) {
   samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(sample));
   numbers.erase(numbers.begin() + static_cast<std::ptrdiff_t>(sample));
+  std::vector<std::vector<Pose<double>>> poses = problem->poses_of_samples();
+  if (!poses.empty()) poses.erase(poses.begin() + static_cast<std::ptrdiff_t>(sample));
   problem = make();
   for (const Sample& kept : samples) problem->add_sample(kept);
+  problem->set_poses_of_samples(std::move(poses));
 }
 
 inline bool OnlineCalibration::Inside::add_if_it_fits(const Sample& sample, OnlineState& state) {

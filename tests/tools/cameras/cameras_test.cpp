@@ -1,10 +1,8 @@
-#include <fstream>
-
-#include "kinecal/files/samples/write_samples.hpp"
 // Cameras alone: photographs of a board, and nothing else.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <map>
 
@@ -13,6 +11,8 @@
 #include "kinecal/study/seeded_random.hpp"
 #include "kinecal/tools/cameras/initial_cameras.hpp"
 #include "kinecal/tools/cameras/lens_start.hpp"
+#include "kinecal/trust/calibrate_and_judge.hpp"
+#include "kinecal/trust/online.hpp"
 #include "support/cameras_alone.hpp"
 #include "support/data.hpp"
 
@@ -179,6 +179,46 @@ TEST(CamerasAlone, TheLensesOfARigAreFoundByEvidence) {
     }
   }
   EXPECT_NEAR(rig.value("right_joint_x"), 0.12, 5e-4);
+}
+
+/// Sample by sample, with the start of each board, it ends where the whole does; a sample in which the cameras
+/// contradict each other is left out.
+TEST(CamerasAlone, FollowedOnlineTheyEndTheSame) {
+  const auto [left, right, samples] = two_fisheyes(0.2);
+  Cameras rig(cameras_config({"left", "right"}, "equidistant", "k1 k2 k3 k4"), samples);
+  ASSERT_THAT(rig.diagnostics.errors, IsEmpty());
+  const JudgedResult whole = calibrate_and_judge(rig.calibration, rig.samples);
+  const CalibrationStep& step = rig.calibration.steps.back();
+  const Eigen::VectorXd start = rig.calibration.table.values();
+  OnlineCalibration online([&] { return step.problem->without_samples(); }, step.free,
+                           {start.data(), static_cast<std::size_t>(start.size())}, {"right"},
+                           {"left"});
+  OnlineState state;
+  for (const Sample& sample : rig.samples) state = online.add(sample);
+  EXPECT_EQ(state.samples, 30);
+  const Assessment& of = whole.assessments.back();
+  for (const int p : step.free.parameters()) {
+    EXPECT_NEAR(online.values()[static_cast<std::size_t>(p)], whole.result.table[p].value,
+                0.02 * of.deviation(p).value())
+        << whole.result.table[p].name;
+  }
+  EXPECT_NEAR(state.noise, 1.0, 0.05);  // by the estimated noise
+  EXPECT_TRUE(state.known);
+  double squares = 0.0;
+  for (const char* axis : {"x", "y", "z"}) {
+    const double deviation =
+        of.deviation(whole.result.table.find(std::string("right_joint_") + axis)).value();
+    squares += deviation * deviation;
+  }
+  EXPECT_GT(state.position, 0.5 * std::sqrt(squares / 3.0));
+  EXPECT_LT(state.position, 2.0 * std::sqrt(squares));
+  EXPECT_FALSE(online.next_move(0.1).has_value());
+  Sample contradicts = rig.samples[1];
+  for (Observation& seen : contradicts.observations) {
+    if (seen.sensor != "right") continue;
+    for (Feature& feature : seen.features) feature.point.x() += 8.0;
+  }
+  EXPECT_FALSE(online.add(contradicts).fits);
 }
 
 /// An ordinary lens gets the model that all programs read, without a coefficient that it does not need, even if a
