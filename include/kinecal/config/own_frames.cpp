@@ -31,7 +31,7 @@ namespace {
 }
 
 /// Gives the models with features in a frame its link.
-/// @returns  the link on which they stood; empty if there is none
+/// @returns  the link on which they stood, the base for a model in the frame itself; empty if there is none
 [[nodiscard]] std::string move_models(Config& config, const std::string& frame,
                                       std::span<const Sample> samples) {
   std::string parent;
@@ -39,7 +39,7 @@ namespace {
     for (ModelConfig& model : step.models) {
       if (sensor_entry(model).sensor->in_own_frame()) continue;
       if (!has_features_in(frame, model, samples)) continue;
-      parent = model.frame;
+      parent = model.frame == frame ? config.base_link : model.frame;
       model.frame = frame;
     }
   }

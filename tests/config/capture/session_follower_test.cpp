@@ -80,6 +80,18 @@ TEST(SessionFollower, NamesALinkThatDoesNotExist) {
   }
 }
 
+TEST(SessionFollower, DoesNotFollowABoardThatAPersonHolds) {
+  KINECAL_NEEDS_DATA("fetch/synth");
+  FetchSession fetch;
+  fetch.config.per_sample.push_back({"board", {"calibrate.yaml", 2}});
+  try {
+    const SessionFollower follower(fetch.config, fetch.robot);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("calibrate.yaml:2: per_sample: a session cannot be"));
+  }
+}
+
 TEST(Accuracy, IsANameANumberAndAUnit) {
   EXPECT_EQ(parse_accuracy("gripper 1 mm").position, 1e-3);
   EXPECT_EQ(parse_accuracy("gripper 1 mm").frame, "");

@@ -2,6 +2,7 @@
 // robot with the lens held.  On simulated Fetches whose arm holds a board.
 //
 //   KINECAL_REPETITIONS=40 tools_tests --gtest_filter=LensAndRobot.*     prints the figures of MANUAL.md
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <cstdlib>
 
 #include "kinecal/sensors/lens.hpp"
+#include "kinecal/trust/calibrate_and_judge.hpp"
 #include "support/cameras_alone.hpp"
 #include "support/lens_fetch.hpp"
 #include "support/repetitions.hpp"
@@ -148,6 +150,49 @@ TEST(LensAndRobot, InTwoStepsAreBetterWhereJointsScatter) {
   EXPECT_GT(all.one.held_out, all.two.held_out);
   if (std::getenv("KINECAL_REPETITIONS") == nullptr) return;
   (void)compare(test::repetitions_of_study(40, 1), 5e-4);  // between them: printed only
+}
+
+/// Recordings of the robot's board, and some in which a person holds one: a pose of its own in these only.
+JudgedResult with_held_board(const TrueFetch& fetch, bool with_recording) {
+  std::string text = config_text(true);
+  text.replace(text.find("models:\n"), 8,
+               "per_sample: [held]\nmodels:\n - {name: held, type: chain3d, frame: held}\n");
+  text +=
+      " - {name: corners_of_held, type: chain3d_to_camera2d, model_3d: held, model_2d: camera}\n";
+  std::vector<Sample> samples(fetch.samples.begin(), fetch.samples.begin() + 15);
+  if (!with_recording) text = config_text(true);
+  for (Sample sample : with_recording ? fetch.held_out : std::vector<Sample>()) {
+    sample.observations[0].sensor = "held";
+    for (Feature& feature : sample.observations[0].features) feature.frame = "held";
+    samples.push_back(sample);
+  }
+  Diagnostics diagnostics;
+  Config config = parse_config(text, "calibrate.yaml", diagnostics);
+  Robot robot = fetch.robot;
+  EXPECT_TRUE(prepare_cameras(robot, config, samples, diagnostics));
+  Calibration calibration = assemble(config, robot, samples, diagnostics);
+  EXPECT_THAT(diagnostics.errors, testing::IsEmpty());
+  return calibrate_and_judge(calibration, samples);
+}
+
+TEST(LensAndRobot, ABoardThatAPersonHoldsInOneRecordingTellsMoreOfTheLens) {
+  const TrueFetch fetch(3, 0.0);
+  const JudgedResult both = with_held_board(fetch, true), robot = with_held_board(fetch, false);
+  ASSERT_TRUE(both.result.converged);
+  const auto deviation = [](const JudgedResult& of, const char* name) {
+    return of.assessments.back().deviation(of.result.table.find(name)).value();
+  };
+  EXPECT_EQ(both.judgement.verdict, Grade::good) << testing::PrintToString(both.judgement.reasons);
+  for (const char* name : {"camera_k1", "camera_k2"}) {
+    EXPECT_LT(deviation(both, name), 0.95 * deviation(robot, name)) << name;
+  }
+  for (const auto& [name, value] : fetch.truth) {
+    const int p = both.result.table.find(name);
+    ASSERT_GE(p, 0) << name;
+    if (const auto of = both.assessments.back().deviation(p)) {
+      EXPECT_NEAR(both.result.table[p].value, value, 4.5 * *of) << name;
+    }
+  }
 }
 
 }  // namespace

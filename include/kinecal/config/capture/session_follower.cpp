@@ -17,6 +17,11 @@ namespace kinecal {
 
 SessionFollower::SessionFollower(Config config, Robot robot, const std::string& frame)
     : config_(std::move(config)), robot_(std::move(robot)), frame_(frame) {
+  if (!config_.per_sample.empty()) {
+    throw InputError(config_.per_sample.front().place.str() +
+                     ": per_sample: a session cannot be followed while a target has a pose of its "
+                     "own in each sample; capture without --calibrate, then calibrate");
+  }
   Diagnostics diagnostics;
   Calibration empty = assemble(config_, robot_, {}, diagnostics);
   diagnostics.throw_if_errors();

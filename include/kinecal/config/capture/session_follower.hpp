@@ -44,7 +44,7 @@ class SessionFollower {
  public:
   /// @param frame  link or free frame whose pose is wanted; empty: that of the first error block of
   ///               the last step
-  /// @throws InputError  if the configuration does not match the robot, or the robot has no such
+  /// @throws InputError  if the configuration does not match the robot or has `per_sample`, or the robot has no such
   ///                     link, with the nearest name
   SessionFollower(Config config, Robot robot, const std::string& frame = {});
   SessionFollower(const SessionFollower&) = delete;
