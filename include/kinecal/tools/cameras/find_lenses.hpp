@@ -6,9 +6,9 @@
 //
 // Each lens is calibrated with all of its coefficients.  For each of five folds it is fitted to the other samples;
 // each sample that was held out gets the mean square of its residuals, its own pose fitted to it.  One lens beats
-// another one if its mean squares, or their logarithms, are smaller on average over samples by more than 1.645 standard
-// errors.  Each camera is tried alone.  A lens that
-// folds over where features are, does not fit at all, or has a parameter that the samples do not determine, is out.
+// another one if its mean squares, or their logarithms, are smaller on average over samples, beyond chance by Student's
+// t at 5 %.  A lens that folds over where features are, does not fit at all, or has a parameter that the samples do not
+// determine, is out.  Each camera is tried alone.
 // Source: Vuong, Likelihood Ratio Tests for Model Selection and Non-Nested Hypotheses, 1989.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

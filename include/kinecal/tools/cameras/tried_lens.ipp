@@ -23,8 +23,10 @@ class SureMean {
   [[nodiscard]] bool is_positive() const {
     if (count_ < 3.0) return false;
     const double mean = sum_ / count_, variance = squared_ / count_ - mean * mean;
-    constexpr double kSure = 1.645;  // standard errors: chance is below 5 %
-    return mean > kSure * std::sqrt(std::max(0.0, variance) / (count_ - 1.0));
+    // Chance is below 5 %: Student's t, to 2 % of its value.
+    const double freedom = count_ - 1.0;
+    const double sure = 1.645 * (1.0 + 1.0 / freedom + 1.1 / (freedom * freedom));
+    return mean > sure * std::sqrt(std::max(0.0, variance) / freedom);
   }
 
  private:
