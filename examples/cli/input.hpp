@@ -28,7 +28,8 @@ struct Input {
 };
 
 /// Reads and assembles everything; errors go to Input::diagnostics.
-[[nodiscard]] Input read_input(const InputOptions& options);
+/// @param first  of several files: what it has decided about cameras holds for the others; nullptr: this is the first
+[[nodiscard]] Input read_input(const InputOptions& options, const Input* first = nullptr);
 
 /// Assembles what was read, and doubts it: for an input whose free parameters were searched for.
 void assemble_input(Input& input, const InputOptions& options);
