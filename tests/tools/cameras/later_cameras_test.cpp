@@ -91,17 +91,25 @@ TEST(LaterCameras, ImagesOfAnotherSizeAreAnError) {
 }
 
 TEST(LaterCameras, ViewsWithoutFourCornersAreLeftOut) {
-  TwoFiles files;
-  for (Sample& sample : files.later) {
-    for (Observation& seen : sample.observations) {
-      if (seen.sensor != "board" && seen.features.size() > 3) seen.features.resize(3);
+  for (const std::size_t spoiled : {3U, 12U}) {
+    TwoFiles files;
+    for (std::size_t s = 0; s < spoiled; ++s) {
+      for (Observation& seen : files.later[s].observations) {
+        if (seen.sensor != "board" && seen.features.size() > 3) seen.features.resize(3);
+      }
+    }
+    EXPECT_EQ(files.prepare(), spoiled < files.later.size());
+    if (spoiled < files.later.size()) {
+      EXPECT_THAT(files.diagnostics.notes,
+                  ElementsAre(AllOf(HasSubstr("view 18"), HasSubstr("no camera shows where"),
+                                    HasSubstr("2 more"))));
+      EXPECT_EQ(files.later[0].observation("board"), nullptr);
+    } else {
+      EXPECT_THAT(
+          files.diagnostics.errors,
+          ElementsAre(AllOf(HasSubstr("view 18"), HasSubstr("in any sample of this file"))));
     }
   }
-  EXPECT_TRUE(files.prepare());
-  EXPECT_THAT(files.diagnostics.notes,
-              ElementsAre(AllOf(HasSubstr("view 18"), HasSubstr("no camera shows where"),
-                                HasSubstr("11 more"))));
-  EXPECT_EQ(files.later[0].observation("board"), nullptr);
 }
 
 /// The first file has decided about the lens; a camera with other intrinsics is another one.

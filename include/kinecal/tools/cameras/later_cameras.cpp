@@ -39,6 +39,20 @@ void take_first(const std::string& camera, const CameraInfo& first, std::vector<
   }
 }
 
+/// True if samples without these targets are of no use: each error block compares one of them.
+[[nodiscard]] bool compares_only(const Config& config, const std::vector<TargetPair>& pairs) {
+  const auto is_target = [&](const std::string& model) {
+    return std::any_of(pairs.begin(), pairs.end(),
+                       [&](const TargetPair& pair) { return pair.target->name == model; });
+  };
+  return std::all_of(config.steps.begin(), config.steps.end(), [&](const StepConfig& step) {
+    return std::all_of(step.error_blocks.begin(), step.error_blocks.end(),
+                       [&](const BlockConfig& block) {
+                         return std::any_of(block.models.begin(), block.models.end(), is_target);
+                       });
+  });
+}
+
 /// Finds where the targets are, by cameras that are known.
 void place_targets(const Robot& robot, const Config& config, const std::vector<TargetPair>& pairs,
                    std::vector<Sample>& samples, Diagnostics& diagnostics) {
@@ -53,6 +67,17 @@ void place_targets(const Robot& robot, const Config& config, const std::vector<T
   }
   Config placed = config;
   (void)place(placed, robot, seen, samples);
+  const bool is_placed = std::any_of(samples.begin(), samples.end(), [&](const Sample& sample) {
+    return std::any_of(pairs.begin(), pairs.end(), [&](const TargetPair& pair) {
+      return sample.poses.contains(pair.joint) && !target_view(pair, sample).pixels.empty();
+    });
+  });
+  if (!is_placed && !pairs.empty() && !samples.empty() && compares_only(config, pairs)) {
+    diagnostics.error(place_of(samples, 0),
+                      "no camera shows in any sample of this file where the target was, by four "
+                      "corners or more that are not nearly on a line; leave the file out");
+    return;
+  }
   drop_unplaced(pairs, samples, diagnostics);
 }
 

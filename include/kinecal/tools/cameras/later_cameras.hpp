@@ -18,7 +18,7 @@ namespace kinecal {
 
 /// Gives the samples of a later file the camera_info of the first one, where they have none or one with the same
 /// intrinsics, and the poses of their targets by these cameras.  A sample in which no camera shows where a target was is
-/// left without it, with a note.  Error: images of another size.
+/// left without it, with a note.  Errors: images of another size; no target in any sample, and nothing else to compare.
 /// @param robot, config  after prepare_cameras() of the first file's samples
 /// @param first          these samples
 /// @returns  false after an error
