@@ -18,6 +18,7 @@
 #include "fit.hpp"
 #include "input.hpp"
 #include "interruption.hpp"
+#include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/checksum.hpp"
@@ -297,7 +298,13 @@ class LogRun {
     if (options_.recorded == Recorded::before) {
       add_rising(rising_of(first_.urdf_text, first_.urdf), samples);
     }
-    (void)prepare_later_cameras(first_.robot, first_.config, first_.samples, samples, diagnostics);
+    if (first_.decides_cameras) {
+      (void)prepare_later_cameras(first_.robot, first_.config, first_.samples, samples,
+                                  diagnostics);
+    } else {
+      Config same = first_.config;
+      choose_lenses(same, samples, diagnostics);  // a given lens replaces that of camera_info
+    }
     diagnostics.throw_if_errors();
     return samples;
   }

@@ -66,9 +66,8 @@ void leave_open(Input& input, const InputOptions& options) {
   }
 }
 
-/// True if the first file has decided about cameras for all: their lenses, and where they begin.
-bool goes_on(const Config& config, const Input* first) {
-  if (first == nullptr) return false;
+/// True if a configuration leaves open where cameras or targets begin, or lenses.
+bool leaves_open(const Config& config) {
   const std::vector<ModelConfig> models = detail::models_of(config);
   return !config.per_sample.empty() ||
          std::any_of(models.begin(), models.end(),
@@ -77,7 +76,8 @@ bool goes_on(const Config& config, const Input* first) {
 
 /// What configuration and samples leave open about cameras: as the first file has it, or by these samples.
 bool prepare(Input& input, const Input* first) {
-  if (!goes_on(input.config, first)) {
+  input.decides_cameras = leaves_open(input.config);
+  if (first == nullptr || !first->decides_cameras) {
     return prepare_cameras(input.robot, input.config, input.samples, input.diagnostics);
   }
   input.config = first->config;

@@ -17,11 +17,12 @@ namespace kinecal::cli {
 struct Input {
   Robot robot;
   Config config;
-  std::string urdf;          ///< name of the URDF in messages: its file or topic
-  std::string urdf_text;     ///< its content
-  std::string config_text;   ///< content of the configuration
-  std::string found_config;  ///< the one that frees what a search found; empty: there was none
-  bool is_searched = false;  ///< what is free is searched for: nothing is assembled yet
+  std::string urdf;              ///< name of the URDF in messages: its file or topic
+  std::string urdf_text;         ///< its content
+  std::string config_text;       ///< content of the configuration
+  std::string found_config;      ///< the one that frees what a search found; empty: there was none
+  bool decides_cameras = false;  ///< finds lenses and where cameras begin, for later files, too
+  bool is_searched = false;      ///< what is free is searched for: nothing is assembled yet
   std::vector<Sample> samples;
   Calibration calibration;
   Diagnostics diagnostics;
