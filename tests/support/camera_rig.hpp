@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/samples/sample.hpp"
+#include "kinecal/sensors/built_in_sensor.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
 #include "kinecal/study/seeded_random.hpp"
 
