@@ -18,11 +18,13 @@
 #include "fit.hpp"
 #include "input.hpp"
 #include "interruption.hpp"
+#include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/checksum.hpp"
 #include "kinecal/report.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/tools/cameras/later_cameras.hpp"
 #include "kinecal/trust/judge_shards.hpp"
 #include "output.hpp"
 #include "processes.hpp"
@@ -146,6 +148,7 @@ class LogRun {
         findings_of(first_.robot, first_.calibration, std::move(judged), first_.samples);
     findings.images = images_of(first_.config);
     findings.lenses = lenses_of(first_.config);
+    findings.has_own_poses = !first_.config.per_sample.empty();
     return findings;
   }
 
@@ -164,11 +167,6 @@ class LogRun {
     check_results(options_);
     first_ = read(0);
     print_or_throw(first_.diagnostics);
-    if (!first_.config.per_sample.empty()) {
-      throw InputError(
-          "per_sample: calibrate-log does not take frames with a pose of their own in each sample; "
-          "calibrate does");
-    }
     check_robot_files(options_, first_);
   }
 
@@ -208,7 +206,7 @@ class LogRun {
     one.samples = {options_.samples[static_cast<std::size_t>(file)]};
     one.is_part = files() > 1;
     if (file > 0) one.urdf_text = first_.urdf_text;  // bags that were split have it in the first
-    return read_input(one);
+    return read_input(one, file > 0 ? &first_ : nullptr);
   }
 
   /// What makes sums those of this calibration.
@@ -299,6 +297,13 @@ class LogRun {
     for (const std::string& camera : options_.cameras) set_camera(samples, camera, diagnostics);
     if (options_.recorded == Recorded::before) {
       add_rising(rising_of(first_.urdf_text, first_.urdf), samples);
+    }
+    if (first_.decides_cameras) {
+      (void)prepare_later_cameras(first_.robot, first_.config, first_.samples, samples,
+                                  diagnostics);
+    } else {
+      Config same = first_.config;
+      choose_lenses(same, samples, diagnostics);  // a given lens replaces that of camera_info
     }
     diagnostics.throw_if_errors();
     return samples;

@@ -12,12 +12,14 @@
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
+#include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/config/own_frames.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/shell_word.hpp"
+#include "kinecal/tools/cameras/later_cameras.hpp"
 #include "kinecal/tools/cameras/prepare_cameras.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
 #include "progress.hpp"
@@ -64,6 +66,26 @@ void leave_open(Input& input, const InputOptions& options) {
   }
 }
 
+/// True if a configuration leaves open where cameras or targets begin, or lenses.
+bool leaves_open(const Config& config) {
+  const std::vector<ModelConfig> models = detail::models_of(config);
+  return !config.per_sample.empty() ||
+         std::any_of(models.begin(), models.end(),
+                     [](const ModelConfig& model) { return model.lens == kAnyLens; });
+}
+
+/// What configuration and samples leave open about cameras: as the first file has it, or by these samples.
+bool prepare(Input& input, const Input* first) {
+  input.decides_cameras = leaves_open(input.config);
+  if (first == nullptr || !first->decides_cameras) {
+    return prepare_cameras(input.robot, input.config, input.samples, input.diagnostics);
+  }
+  input.config = first->config;
+  input.robot = first->robot;
+  return prepare_later_cameras(input.robot, input.config, first->samples, input.samples,
+                               input.diagnostics);
+}
+
 }  // namespace
 
 void assemble_input(Input& input, const InputOptions& options) {
@@ -103,7 +125,7 @@ Recording read_recordings(const std::vector<std::string>& files, Diagnostics& di
   return all;
 }
 
-Input read_input(const InputOptions& options) {
+Input read_input(const InputOptions& options, const Input* first) {
   Input input;
   Diagnostics& diagnostics = input.diagnostics;
   const auto read_robot = [&](auto&& text) {
@@ -172,7 +194,7 @@ Input read_input(const InputOptions& options) {
     if (options.recorded == Recorded::before) {
       add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
     }
-    if (!prepare_cameras(input.robot, input.config, input.samples, diagnostics)) return input;
+    if (!prepare(input, first)) return input;
     is_open ? leave_open(input, options) : assemble_input(input, options);
     return input;
   }

@@ -17,18 +17,20 @@ namespace kinecal::cli {
 struct Input {
   Robot robot;
   Config config;
-  std::string urdf;          ///< name of the URDF in messages: its file or topic
-  std::string urdf_text;     ///< its content
-  std::string config_text;   ///< content of the configuration
-  std::string found_config;  ///< the one that frees what a search found; empty: there was none
-  bool is_searched = false;  ///< what is free is searched for: nothing is assembled yet
+  std::string urdf;              ///< name of the URDF in messages: its file or topic
+  std::string urdf_text;         ///< its content
+  std::string config_text;       ///< content of the configuration
+  std::string found_config;      ///< the one that frees what a search found; empty: there was none
+  bool decides_cameras = false;  ///< finds lenses and where cameras begin, for later files, too
+  bool is_searched = false;      ///< what is free is searched for: nothing is assembled yet
   std::vector<Sample> samples;
   Calibration calibration;
   Diagnostics diagnostics;
 };
 
 /// Reads and assembles everything; errors go to Input::diagnostics.
-[[nodiscard]] Input read_input(const InputOptions& options);
+/// @param first  of several files: what it has decided about cameras holds for the others; nullptr: this is the first
+[[nodiscard]] Input read_input(const InputOptions& options, const Input* first = nullptr);
 
 /// Assembles what was read, and doubts it: for an input whose free parameters were searched for.
 void assemble_input(Input& input, const InputOptions& options);

@@ -5,6 +5,7 @@
 #include "kinecal/tools/cameras/camera_start.hpp"
 #include "kinecal/tools/cameras/find_lenses.hpp"
 #include "kinecal/tools/cameras/initial_cameras.hpp"
+#include "kinecal/tools/cameras/later_cameras.hpp"
 #include "kinecal/tools/cameras/lens_start.hpp"
 #include "kinecal/tools/cameras/next_photographs.hpp"
 #include "kinecal/tools/cameras/prepare_cameras.hpp"

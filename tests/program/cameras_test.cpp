@@ -1,15 +1,11 @@
 // kinecal init --cameras, as users call it: corners of a board that somebody held, and nothing else.
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <filesystem>
-#include <random>
 
-#include "kinecal/geometry/rpy.hpp"
-#include "kinecal/sensors/lens_camera.hpp"
 #include "support/run_program.hpp"
+#include "support/wide_camera.hpp"
 
 namespace kinecal {
 namespace {
@@ -21,42 +17,13 @@ using testing::Not;
 /// A wide camera that saw a board 30 times.
 class CamerasProgram : public test::ProgramTest {
  protected:
-  /// @param far  samples from this one on have another image size
-  static std::string samples(int far = 1000) {
-    std::mt19937 random(5);
-    std::uniform_real_distribution<double> side(-0.5, 0.5), tilt(-0.6, 0.6);
-    std::normal_distribution<double> noise(0.0, 0.1);  // pixels
-    const std::array<double, 4> lens = {0.02, -0.004, 0.0, 0.0};
-    std::string text;
-    for (int n = 0; n < 30; ++n) {
-      const Pose<double> camera_T_board{
-          rotation_from_rpy({tilt(random), tilt(random), 3.0 * tilt(random)}),
-          {side(random) - 0.15, side(random) - 0.1, 0.45 + 0.3 * side(random)}};
-      std::string board, seen;
-      for (int i = 0; i < 54; ++i) {
-        const Vector3<double> corner(0.035 * (i % 9), 0.035 * (i / 9), 0.0);
-        const Eigen::Vector2d at =
-            Equidistant::image(Vector3<double>(camera_T_board * corner), lens);
-        board += fmt::format("  - {{header: {{frame_id: board}}, point: {{x: {}, y: {}, z: 0}}}}\n",
-                             corner.x(), corner.y());
-        seen += fmt::format("  - {{header: {{frame_id: camera}}, point: {{x: {}, y: {}, z: 0}}}}\n",
-                            640 + 380 * at.x() + noise(random), 500 + 381 * at.y() + noise(random));
-      }
-      text += fmt::format(
-          "joint_states: {{name: [], position: []}}\nobservations:\n- sensor_name: board\n  "
-          "features:\n{}- sensor_name: camera\n  features:\n{}  ext_camera_info: {{camera_info: "
-          "{{width: {}, height: 960}}}}\n---\n",
-          board, seen, n < far ? 1280 : 640);
-    }
-    return text;
-  }
   [[nodiscard]] bool exists(const char* name) const {
     return std::filesystem::exists(folder_ / name);
   }
 };
 
 TEST_F(CamerasProgram, FindAFisheyeFromCornersAlone) {
-  write("samples.yaml", samples());
+  write("samples.yaml", test::wide_camera_samples());
   const test::Outcome init = kinecal("init --cameras camera --target checkerboard");
   ASSERT_EQ(init.code, 0) << init.err;
   EXPECT_THAT(init.out,
@@ -77,7 +44,7 @@ TEST_F(CamerasProgram, FindAFisheyeFromCornersAlone) {
 }
 
 TEST_F(CamerasProgram, AGivenLensAndItsCoefficients) {
-  write("samples.yaml", samples());
+  write("samples.yaml", test::wide_camera_samples());
   write("cameras.yaml",
         "base_link: camera\nper_sample: [board]\nmodels:\n - {name: board, type: chain3d, frame: "
         "board}\n - {name: camera, type: camera2d, frame: camera, lens: fisheye}\nfree_params: "
@@ -96,7 +63,7 @@ TEST_F(CamerasProgram, AGivenLensAndItsCoefficients) {
 }
 
 TEST_F(CamerasProgram, SaysWhatCannotBe) {
-  write("samples.yaml", samples(20));
+  write("samples.yaml", test::wide_camera_samples(20));
   ASSERT_EQ(kinecal("init --cameras camera --target checkerboard").code, 0);
   const test::Outcome sizes =
       kinecal("calibrate --config calibrate.yaml --samples samples.yaml --output calibrated");

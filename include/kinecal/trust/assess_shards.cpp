@@ -24,10 +24,11 @@ namespace detail {
     const Term& term = problem.term(t);
     const BlockSums& block = sums.blocks[static_cast<std::size_t>(t)];
     const double median = DistanceBins::median(block.bins.col(2)) * term.weight;
-    noise.push_back(block_noise(term, static_cast<std::int64_t>(block.figures(BlockSums::features)),
-                                block.figures(BlockSums::weighted),
-                                inverse.cwiseProduct(block.information).sum(),
-                                robust_sigma({median}, term.feature_size)));
+    noise.push_back(
+        block_noise(term, static_cast<std::int64_t>(block.figures(BlockSums::features)),
+                    block.figures(BlockSums::weighted),
+                    inverse.cwiseProduct(block.information).sum() + block.figures(BlockSums::used),
+                    robust_sigma({median}, term.feature_size)));
   }
   return noise;
 }
@@ -56,6 +57,13 @@ namespace detail {
   return rows;
 }
 
+/// Of these, how many samples' own poses use up.
+[[nodiscard]] inline double used_of(const ShardSums& sums) {
+  double used = 0.0;
+  for (const BlockSums& block : sums.blocks) used += block.figures(BlockSums::used);
+  return used;
+}
+
 /// Adds the sums of all shards.
 /// @param misfits  out: see ShardAssessment
 [[nodiscard]] inline ShardSums all_sums(const Shards& shards, const FreeSet& free,
@@ -68,10 +76,10 @@ namespace detail {
   const std::string what = name_at(name_at("sums", free, before), free, after);
   ShardSums sums(free.size(), problem.num_terms());
   for (const std::vector<double>& one : numbers_of_shards(shards, what, numbers_of)) {
-    const double rows = rows_of(problem, sums), cost = sums.cost;
+    const auto checked = [&] { return rows_of(problem, sums) - used_of(sums); };
+    const double rows = checked(), cost = sums.cost;
     sums.add(one);
-    misfits.push_back(
-        std::sqrt(2.0 * (sums.cost - cost) / std::max(1.0, rows_of(problem, sums) - rows)));
+    misfits.push_back(std::sqrt(2.0 * (sums.cost - cost) / std::max(1.0, checked() - rows)));
   }
   return sums;
 }
@@ -84,10 +92,11 @@ namespace detail {
          by.basis.transpose();
 }
 
-/// C, from the sums.
+/// C, from the sums.  A sample's gradient does not feel that its own poses are fitted, as J' is across them; only the
+/// other parameters make gradients smaller.
 [[nodiscard]] inline Uncertainty shard_uncertainty(const AnyProblem& problem, const ShardSums& sums,
                                                    const Coordinates& by, double of_priors) {
-  const double rows = rows_of(problem, sums);
+  const double rows = rows_of(problem, sums) - used_of(sums);
   const double freedom = rows / std::max(1.0, rows - static_cast<double>(by.basis.cols()));
   const Eigen::MatrixXd inverse = inverse_in(by, sums.hessian);
   const Eigen::MatrixXd covariance =
@@ -109,6 +118,7 @@ ShardAssessment assess_shards(const Shards& shards, const FreeSet& free, Paramet
   const Coordinates by = detail::coordinates_of(detail::shard_information(shards, inside, after));
   const detail::ShardSums sums = detail::all_sums(shards, inside, before, after, found.misfits);
   of.rows = static_cast<std::int64_t>(detail::rows_of(problem, sums));
+  of.used = detail::used_of(sums);
   Eigen::MatrixXd information = sums.priors;
   for (const detail::BlockSums& block : sums.blocks) information += block.information;
   of.noise = detail::noise_of(problem, sums, detail::inverse_in(by, information));

@@ -24,7 +24,9 @@ struct ShardAssessment {
   /// once.
   Assessment assessment;
   std::vector<BlockStatistics> blocks;  ///< of error blocks; medians to 0.3 %
-  std::vector<double> misfits;  ///< of each shard: RMS of its weighted residuals, losses included
+  /// Of each shard: RMS of its weighted residuals, losses included, by the degrees of freedom that its samples' own poses
+  /// leave.
+  std::vector<double> misfits;
 };
 
 /// @param before   values of all parameters of the table at the start

@@ -12,15 +12,15 @@
 namespace kinecal {
 
 namespace detail {
-namespace {
 
-/// True if a step frees a coefficient of a camera's lens.
-[[nodiscard]] bool frees_lens(const MountedSensor& camera, const FreeSet& free) {
+bool frees_lens(const MountedSensor& camera, const FreeSet& free) {
   const std::vector<int>& own = camera.parameters();
   return camera.sensor().delivers(Quantity::pixel) && own.size() > kIntrinsics &&
          std::any_of(own.begin() + kIntrinsics, own.end(),
                      [&](int p) { return free.column(p) >= 0; });
 }
+
+namespace {
 
 /// A camera at the solution.
 struct SolvedCamera {

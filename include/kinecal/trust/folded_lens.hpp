@@ -36,4 +36,11 @@ struct FoldedLens {
                                                     ParameterValues values,
                                                     std::span<const Sample> samples);
 
+namespace detail {
+
+/// True if a step frees a coefficient of a camera's lens.
+[[nodiscard]] bool frees_lens(const MountedSensor& camera, const FreeSet& free);
+
+}  // namespace detail
+
 }  // namespace kinecal

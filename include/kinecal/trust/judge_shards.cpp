@@ -10,6 +10,7 @@
 
 #include "kinecal/trust/assess_shards.hpp"
 #include "kinecal/trust/estimated_noise.hpp"
+#include "kinecal/trust/shard_folds.ipp"
 
 namespace kinecal {
 
@@ -67,11 +68,25 @@ class ShardProcedure {
     return made;
   }
 
+  /// Solves the first shard alone.  Its samples' own poses stay where they begin: sums must not depend on which process
+  /// has solved it, or whether they were found on disk.
+  [[nodiscard]] CalibrationResult solve_first() const {
+    std::vector<std::vector<std::vector<Pose<double>>>> poses;
+    for (const CalibrationStep& step : calibration_.first.steps) {
+      poses.push_back(step.problem->poses_of_samples());
+    }
+    CalibrationResult result = calibrate(calibration_.first);
+    for (std::size_t s = 0; s < poses.size(); ++s) {
+      step(s).problem->set_poses_of_samples(std::move(poses[s]));
+    }
+    return result;
+  }
+
   /// The result of the first shard alone: where to start.
   [[nodiscard]] std::vector<double> start(const std::string& prefix) const {
     const auto of_first = [&](int shard) {
       if (shard > 0) return std::vector<double>();
-      const CalibrationResult result = calibrate(calibration_.first);
+      const CalibrationResult result = solve_first();
       const Eigen::VectorXd values =
           result.converged ? result.table.values() : calibration_.first.table.values();
       return std::vector<double>(values.begin(), values.end());
@@ -132,6 +147,10 @@ class ShardProcedure {
     if (!judged.result.converged) return false;
     ShardAssessment found = assess_shards(shards, free, initial, values, calibration_.samples);
     found.assessment.step = step(s).name;
+    found.assessment.folded = shard_folds(shards, free, values, [this](int shard) {
+      if (shard > 0) return calibration_.read(shard);
+      return std::vector<Sample>(calibration_.samples.begin(), calibration_.samples.end());
+    });
     judged.assessments.push_back(std::move(found.assessment));
     merge_statistics(judged.result.blocks, std::move(found.blocks));
     misfits_ = std::move(found.misfits);

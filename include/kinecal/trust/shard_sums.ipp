@@ -40,7 +40,7 @@ struct BlockSums {
   Eigen::MatrixXd information;  ///< (free x free) sum of rho' w^2 J^T J
   Eigen::MatrixXd bins;         ///< (bins x 3) distances before, after, and after over sigma
   /// Number of features; sums of distances, squared components and the largest distance, before and
-  /// after; squares of weighted residuals with their losses.
+  /// after; squares of weighted residuals with their losses; rows that samples' own poses use up.
   Eigen::VectorXd figures;
 
   enum Figure {
@@ -52,6 +52,7 @@ struct BlockSums {
     squares_after,
     max_after,
     weighted,
+    used,
     kFigures
   };
 
@@ -146,6 +147,7 @@ inline void add_features(const Term& term, const TermResiduals& rows, ShardSums&
                          BlockSums& block, Eigen::Ref<Eigen::VectorXd> score) {
   const Loss& loss = term.options.loss;
   const int size = term.feature_size;
+  block.figures(BlockSums::used) += rows.used.sum();
   for (Eigen::Index row = 0; row < rows.residual.size(); row += size) {
     const double weight = term.weight * rows.factor(row);
     const Eigen::VectorXd r = weight * rows.residual.segment(row, size);

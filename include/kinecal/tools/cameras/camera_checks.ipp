@@ -17,10 +17,10 @@
 namespace kinecal::detail {
 
 /// Reports images of two sizes.
+/// @param first  a sample of another file that has an image of the camera; nullptr: the first of these
 /// @returns  false if there are
 [[nodiscard]] inline bool check_sizes(const ModelConfig& camera, const std::vector<Sample>& samples,
-                                      Diagnostics& diagnostics) {
-  const Sample* first = nullptr;
+                                      Diagnostics& diagnostics, const Sample* first = nullptr) {
   const auto size = [&](const Sample& sample) {
     const CameraInfo& info = *sample.observation(camera.name)->camera;
     return std::pair(info.width, info.height);

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kinecal/geometry/rpy.hpp"
@@ -54,6 +55,28 @@ struct SeenTarget {
   const SampledChain chain(robot, make_chain(robot, config.base_link, link), ParameterTable{});
   if (!chain.has_joints(sample)) return std::nullopt;
   return chain.tip(sample, Corrections<double>(chain.chain().joints.size()));
+}
+
+/// The robot whose joints' frames begin where the configuration says; floating ones stay, because their frames are
+/// beyond what was measured.
+[[nodiscard]] inline Robot at_initial_values(const Config& config, const Robot& robot) {
+  std::vector<Joint> joints = robot.joints();
+  const StepConfig& step = config.steps.front();
+  for (const FrameInitialValueConfig& value : step.frame_initial_values) {
+    const auto joint = std::find_if(joints.begin(), joints.end(),
+                                    [&](const Joint& one) { return one.name == value.name; });
+    const auto frame = std::find_if(step.free_frames.begin(), step.free_frames.end(),
+                                    [&](const auto& one) { return one.name == value.name; });
+    if (joint == joints.end() || joint->type == JointType::floating) continue;
+    if (frame == step.free_frames.end()) continue;
+    Vector3<double> shift = value.xyz, turn = log(rotation_from_rpy(value.rpy));
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      if (!frame->axes[static_cast<std::size_t>(axis)]) shift(axis) = 0.0;
+      if (!frame->axes[static_cast<std::size_t>(axis) + 3]) turn(axis) = 0.0;
+    }
+    joint->origin = joint->origin * Pose<double>{exp(turn), shift};
+  }
+  return Robot(robot.name(), std::move(joints));
 }
 
 /// True if a camera stands on the base by a fixed joint whose whole frame is free without an initial value.

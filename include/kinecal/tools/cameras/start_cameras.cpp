@@ -16,6 +16,7 @@
 #include "kinecal/sensors/lens.hpp"
 #include "kinecal/tools/cameras/camera_checks.ipp"
 #include "kinecal/tools/cameras/camera_places.ipp"
+#include "kinecal/tools/cameras/known_cameras.ipp"
 #include "kinecal/tools/cameras/single_camera.hpp"
 #include "kinecal/tools/cameras/target_poses.ipp"
 
@@ -23,16 +24,6 @@ namespace kinecal {
 
 namespace detail {
 namespace {
-
-/// The camera_info of a camera in some sample; nullptr if none has one.
-[[nodiscard]] const CameraInfo* info_of(const std::string& camera,
-                                        const std::vector<Sample>& samples) {
-  for (const Sample& sample : samples) {
-    const Observation* seen = sample.observation(camera);
-    if (seen != nullptr && seen->camera) return &*seen->camera;
-  }
-  return nullptr;
-}
 
 /// The size of a camera's image: as recorded, or as far as corners lie around its middle.
 [[nodiscard]] std::array<double, 2> image_size_of(const CameraInfo* info,
@@ -45,46 +36,6 @@ namespace {
     for (const Eigen::Vector2d& pixel : view.pixels) box.extend(pixel);
   }
   return {box.min().x() + box.max().x() + 1.0, box.min().y() + box.max().y() + 1.0};
-}
-
-/// Gives a camera its first intrinsics in all samples.
-void set_info(const std::string& camera, const CameraInfo& found, std::vector<Sample>& samples) {
-  for (Sample& sample : samples) {
-    for (Observation& seen : sample.observations) {
-      if (seen.sensor != camera) continue;
-      if (!seen.camera) seen.camera.emplace();
-      const int width = seen.camera->width, height = seen.camera->height;
-      seen.camera = found;
-      seen.camera->width = width;
-      seen.camera->height = height;
-    }
-  }
-}
-
-/// camera_T_target of each sample that has it, by a camera that is known.
-[[nodiscard]] std::map<std::size_t, Pose<double>> poses_by(const CameraInfo& info, ImageKind image,
-                                                           const std::vector<TargetView>& views) {
-  std::map<std::size_t, Pose<double>> poses;
-  const Lens lens(info, image);
-  for (std::size_t s = 0; s < views.size(); ++s) {
-    const auto pose = pose_of_view(
-        views[s], [&](const Eigen::Vector2d& pixel) { return lens.ray(pixel.x(), pixel.y()); });
-    if (pose) poses.emplace(s, *pose);
-  }
-  return poses;
-}
-
-/// Takes away poses at which the camera does not see the corners that it saw: of a few corners, nearly on a line.
-void drop_unseen(const TargetPair& pair, const CameraInfo& info,
-                 const std::vector<TargetView>& views, std::map<std::size_t, Pose<double>>& poses) {
-  const Lens lens(info, pair.camera->image);
-  std::erase_if(poses, [&](const auto& of) {
-    return std::any_of(views[of.first].plane.begin(), views[of.first].plane.end(),
-                       [&](const Eigen::Vector2d& p) {
-                         const Vector3<double> at(p.x(), p.y(), 0.0);
-                         return !lens.project(of.second * at).allFinite();
-                       });
-  });
 }
 
 /// True if all intrinsics of a camera are free in some step.
@@ -109,12 +60,11 @@ void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samp
   if (!detail::check_sensors(config, pairs, samples, diagnostics)) return;
   std::vector<detail::SeenTarget> seen;
   for (const detail::TargetPair& pair : pairs) {
-    std::vector<TargetView> views;
-    for (const Sample& sample : samples) views.push_back(detail::target_view(pair, sample));
+    const std::vector<TargetView> views = detail::views_of(pair, samples);
     const CameraInfo* info = detail::info_of(pair.camera->name, samples);
     if (!detail::check_sizes(*pair.camera, samples, diagnostics)) continue;
     detail::SeenTarget of{pair, {}};
-    if (info != nullptr && (info->k[0] > 0.0 || info->p[0] > 0.0)) {
+    if (detail::is_known(info)) {
       of.poses = detail::poses_by(*info, pair.camera->image, views);
     } else {
       if (!detail::has_free_intrinsics(config, *pair.camera)) {
@@ -144,8 +94,7 @@ void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samp
     detail::drop_unseen(pair, *detail::info_of(pair.camera->name, samples), views, of.poses);
     seen.push_back(std::move(of));
   }
-  const auto cameras = detail::place_cameras(config, robot, seen);
-  detail::set_poses(config, robot, seen, cameras, samples);
+  const auto cameras = detail::place(config, robot, seen, samples);
   for (const detail::SeenTarget& of : seen) {
     const bool is_lost = detail::is_placed_by_us(config, robot, *of.pair.camera) &&
                          !cameras.contains(of.pair.camera->name);

@@ -1,0 +1,125 @@
+#include "kinecal/trust/judge_shards.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "support/photographs.hpp"
+
+namespace kinecal {
+namespace {
+
+using test::Photographs;
+
+/// Photographs in three shards of different size, against all of them at once.
+struct InShards {
+  static constexpr std::size_t kSecond = 60, kThird = 90;
+
+  InShards(Photographs photographs, std::vector<std::string> free)
+      : all(std::move(photographs)), names(std::move(free)), at_once(all.calibration(names)) {
+    once = calibrate_and_judge(at_once, all.samples, {.keep_outliers = true});
+  }
+  [[nodiscard]] JudgedResult calibrate(const ShardExchange& exchange = {}) {
+    Photographs first = all;
+    first.samples.resize(kSecond);
+    sharded.first = first.calibration(names);
+    first_samples = first.samples;
+    sharded.samples = first_samples;
+    sharded.names = {"a", "b", "c"};
+    sharded.num_samples = std::ssize(all.samples);
+    sharded.num_residuals = {at_once.steps[0].problem->num_residuals()};
+    sharded.free = {at_once.steps[0].free};
+    sharded.read = [this](int shard) {
+      const auto begin = all.samples.begin();
+      return shard == 1 ? std::vector<Sample>(begin + kSecond, begin + kThird)
+                        : std::vector<Sample>(begin + kThird, all.samples.end());
+    };
+    sharded.exchange = exchange;
+    return calibrate_and_judge(sharded);
+  }
+
+  Photographs all;
+  std::vector<std::string> names;
+  Calibration at_once;
+  JudgedResult once;
+  ShardedCalibration sharded;
+  std::vector<Sample> first_samples;
+};
+
+const std::vector<std::string> kLens = {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
+
+/// Each photograph has a pose of the board of its own, which uses up six rows.
+TEST(JudgeShards, OwnPosesAreAsWithAllSamplesAtOnce) {
+  InShards shards({test::distorted_camera(), "plumb_bob", {.views = 240}}, kLens);
+  const JudgedResult judged = shards.calibrate();
+  ASSERT_TRUE(judged.result.converged && shards.once.result.converged);
+  const Assessment &of = judged.assessments.back(), &all = shards.once.assessments.back();
+  for (int i = 0; i < std::ssize(kLens); ++i) {
+    const double deviation = all.uncertainty.deviation(i);
+    EXPECT_NEAR(judged.result.table[i].value, shards.once.result.table[i].value, 1e-3 * deviation)
+        << kLens[static_cast<std::size_t>(i)];
+    // Gradients of 240 photographs show a variance to 1 / sqrt(2 * 240) = 5 %.
+    EXPECT_NEAR(of.uncertainty.deviation(i) / deviation, 1.0, 0.15)
+        << kLens[static_cast<std::size_t>(i)];
+  }
+  EXPECT_EQ(of.rows, all.rows);
+  EXPECT_NEAR(of.used, 6.0 * 240.0, 1e-6);
+  EXPECT_NEAR(of.used, all.used, 1e-6);
+  EXPECT_NEAR(of.noise[0].freedom, all.noise[0].freedom, 1e-4);
+  EXPECT_NEAR(of.noise[0].sigma, all.noise[0].sigma, 1e-6 * all.noise[0].sigma);
+  EXPECT_NEAR(of.noise[0].robust, all.noise[0].robust, 0.004 * all.noise[0].robust);
+  EXPECT_NEAR(judged.result.steps[0].final_cost, shards.once.result.steps[0].final_cost,
+              1e-9 * judged.result.steps[0].final_cost);
+  EXPECT_EQ(judged.judgement.verdict, shards.once.judgement.verdict);
+}
+
+/// 1 - 0.25 r^2 falls over before the corners of the image: all shards know where, only the last one has the farthest
+/// feature.
+TEST(JudgeShards, ALensThatFoldsOverIsSeen) {
+  CameraInfo folding = test::distorted_camera();
+  folding.d = {-0.25, 0.0, 0.0, 0.0, 0.0};
+  InShards shards({folding, "plumb_bob", {.views = 110, .aside = 0.1}}, kLens);
+  const JudgedResult judged = shards.calibrate();
+  const auto &of = judged.assessments.back().folded, &all = shards.once.assessments.back().folded;
+  ASSERT_EQ(all.size(), 1U);
+  ASSERT_EQ(of.size(), 1U);
+  EXPECT_EQ(of[0].sensor, "camera");
+  EXPECT_NEAR(of[0].radius, all[0].radius, 0.1);
+  EXPECT_NEAR(of[0].farthest, all[0].farthest, 0.1);
+  EXPECT_EQ(judged.judgement.verdict, shards.once.judgement.verdict);
+}
+
+/// Sums that were found on disk are those of another process, to the last bit.
+TEST(JudgeShards, OwnPosesDoNotDependOnWhatWasComputedBefore) {
+  InShards shards({test::distorted_camera(), "plumb_bob", {.views = 110}}, kLens);
+  std::map<std::string, std::vector<std::vector<double>>> store;
+  int computed = 0;
+  const ShardExchange exchange = [&](const std::string& what, const NumbersOfShard& numbers_of) {
+    std::vector<std::vector<double>>& all = store[what];
+    if (!all.empty()) return all;
+    ++computed;
+    all.resize(3);
+    for (int shard = 2; shard >= 0; --shard) {
+      all[static_cast<std::size_t>(shard)] = numbers_of(shard);
+    }
+    return all;
+  };
+  const JudgedResult alone = shards.calibrate(), shared = shards.calibrate(exchange);
+  const int before = computed;
+  // Half of them are there, as after a computer was switched off.
+  bool is_lost = false;
+  for (auto& [what, all] : store) {
+    if (is_lost) all.clear();
+    is_lost = !is_lost;
+  }
+  const JudgedResult again = shards.calibrate(exchange);
+  EXPECT_LT(computed, 2 * before);
+  for (int i = 0; i < alone.result.table.size(); ++i) {
+    EXPECT_EQ(alone.result.table[i].value, shared.result.table[i].value);
+    EXPECT_EQ(alone.result.table[i].value, again.result.table[i].value);
+  }
+}
+
+}  // namespace
+}  // namespace kinecal
