@@ -123,7 +123,7 @@ TEST(CamerasAlone, TheLensesOfARigAreFoundByEvidence) {
 /// Sample by sample, with the start of each board, it ends where the whole does; a sample in which the cameras
 /// contradict each other is left out.
 TEST(CamerasAlone, FollowedOnlineTheyEndTheSame) {
-  const auto [left, right, samples] = two_fisheyes(0.2);
+  const auto [left, right, samples, boards] = two_fisheyes(0.2);
   Cameras rig(cameras_config({"left", "right"}, "equidistant", "k1 k2 k3 k4"), samples);
   ASSERT_THAT(rig.diagnostics.errors, IsEmpty());
   const JudgedResult whole = calibrate_and_judge(rig.calibration, rig.samples);
