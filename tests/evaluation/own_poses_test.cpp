@@ -118,8 +118,7 @@ TEST(OwnPoses, AreTheSchurComplementOfTheLargeProblem) {
     const FreeSet free = Rig::free_of(*own);
     const std::vector<double> values = values_of(*own, 0.01);
     const auto evaluator = own->evaluator(free);
-    NormalEquations whole = evaluator->normal_equations(values);
-    for (int again = 0; again < 5; ++again) whole = evaluator->normal_equations(values);
+    const NormalEquations whole = evaluator->normal_equations(values);
     const auto poses = evaluator->own_poses(values);
     double cost = 0.0;
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(5);

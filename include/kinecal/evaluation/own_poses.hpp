@@ -101,10 +101,10 @@ class OwnPosesEvaluator final : public AnyEvaluator {
   /// a sample.
   [[nodiscard]] std::vector<detail::OwnPoseSums> start(ParameterValues values, Losses losses);
   /// Fits all poses at these values.
-  void fit(ParameterValues values, Losses losses, int most_steps);
+  void fit(ParameterValues values, Losses losses);
   /// The rows at the fitted poses, with their derivatives by the free parameters: J'.
   [[nodiscard]] std::optional<UndefinedResidual> collect(ParameterValues values, Losses losses,
-                                                         Linearization at, int most_steps);
+                                                         Linearization at);
 
   /// Fitted poses, and how they change with the others.
   struct KnownPoses {
@@ -112,9 +112,6 @@ class OwnPosesEvaluator final : public AnyEvaluator {
     std::vector<Eigen::MatrixXd> by_free;  ///< (poses x free) of each sample, its sign reversed
     std::vector<double> values;            ///< at which they were fitted, of all parameters
   };
-
-  /// Steps of a pose.  A solver comes again: it goes on where it was.
-  static constexpr int kMostSteps = 100, kStepsOfSolver = 20;
 
   const BasicProblem<S>& problem_;
   FreeSet free_, own_, all_;

@@ -41,9 +41,8 @@ OwnPosesEvaluator<S>::OwnPosesEvaluator(const BasicProblem<S>& problem, const Fr
 
 template <class S>
 std::optional<UndefinedResidual> OwnPosesEvaluator<S>::collect(ParameterValues values,
-                                                               Losses losses, Linearization at,
-                                                               int most_steps) {
-  fit(values, losses, most_steps);
+                                                               Losses losses, Linearization at) {
+  fit(values, losses);
   rows_.clear();
   const auto undefined = by_all_->evaluate(
       values, true,
@@ -83,7 +82,7 @@ std::optional<UndefinedResidual> OwnPosesEvaluator<S>::evaluate(ParameterValues 
                                                                 bool derivatives,
                                                                 const RowVisitor& visit,
                                                                 Linearization at) {
-  const auto undefined = collect(values, Losses::as_given, at, kMostSteps);
+  const auto undefined = collect(values, Losses::as_given, at);
   for (Rows& of : rows_) {
     if (!derivatives) of.residuals.jacobian.resize(0, 0);
     visit(of.term, of.sample, of.residuals);
@@ -97,12 +96,12 @@ NormalEquations OwnPosesEvaluator<S>::normal_equations(ParameterValues values, b
   NormalEquations total(derivatives ? free_.size() : 0);
   std::optional<UndefinedResidual> undefined;
   if (!derivatives) {
-    fit(values, losses, kStepsOfSolver);
+    fit(values, losses);
     undefined = by_own_->evaluate(values, false, [&](int t, int, const TermResiduals& rows) {
       (void)detail::squared_weights(problem_.term(t), rows, losses, total.cost);
     });
   } else {
-    undefined = collect(values, losses, Linearization::measured, kStepsOfSolver);
+    undefined = collect(values, losses, Linearization::measured);
     for (const Rows& of : rows_) {
       const Eigen::MatrixXd weighted = of.weights.asDiagonal() * of.residuals.jacobian;
       total.cost += of.cost;
@@ -125,7 +124,7 @@ NormalEquations OwnPosesEvaluator<S>::normal_equations(ParameterValues values, b
 
 template <class S>
 std::vector<std::vector<Pose<double>>> OwnPosesEvaluator<S>::own_poses(ParameterValues values) {
-  fit(values, Losses::as_given, kMostSteps);
+  fit(values, Losses::as_given);
   return now_;
 }
 

@@ -73,12 +73,13 @@ std::vector<detail::OwnPoseSums> OwnPosesEvaluator<S>::start(ParameterValues val
 }
 
 template <class S>
-void OwnPosesEvaluator<S>::fit(ParameterValues values, Losses losses, int most_steps) {
+void OwnPosesEvaluator<S>::fit(ParameterValues values, Losses losses) {
   std::vector<detail::OwnPoseSums> at = start(values, losses);
   std::vector<detail::Damping> damping(now_.size());
   std::vector<bool> moves(now_.size(), true);
+  constexpr int kMostSteps = 100;
   constexpr double kSettled = 1e-12;  // of the cost
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < kMostSteps; ++step) {
     const Poses before = now_;
     std::vector<double> promised(now_.size(), 0.0);
     for (std::size_t s = 0; s < now_.size(); ++s) {
