@@ -112,6 +112,7 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
       linear_fit(*evaluator, values, determined_coordinates(problem, inside, values));
   found.rows = fit.residual.size();
   found.used = fit.used.sum();
+  found.samples = problem.num_samples();
   const PoseGroups single = pose_groups(problem, samples);
   found.readings = single.readings();
   found.one_pose = are_one_pose(problem, samples);

@@ -161,6 +161,7 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
     detail::judge_freedom(assessments[s], judgement);
     if (last) detail::judge_held_out(assessments[s], judgement);
     if (last) detail::judge_folds(assessments[s], judgement);
+    if (last) detail::judge_views(assessments[s], result.table, judgement);
     if (last) detail::judge_projection(assessments[s], judgement);
     if (last && assessments[s].one_pose) {
       judgement.wants_samples = true;

@@ -56,6 +56,34 @@ inline void judge_folds(const Assessment& step, Judgement& judgement) {
   }
 }
 
+/// Views that are too few, or too much alike, for intrinsics: only where each sample has a pose of its own, so that
+/// nothing else tells of the camera.  Their +- say nothing then: they come from these few.
+inline void judge_views(const Assessment& step, const ParameterTable& table, Judgement& judgement) {
+  constexpr double kOwn = 5.0;                      // residuals of a sample, of the six of a pose
+  constexpr std::int64_t kFewest = 3, kEnough = 8;  // views
+  constexpr double kKnown = 0.05;                   // of the focal length
+  if (!(step.used > kOwn * static_cast<double>(step.samples))) return;
+  for (const int p : step.parameters) {
+    const std::string& name = table[p].name;
+    if (!name.ends_with("_fx")) continue;
+    const std::string camera = name.substr(0, name.size() - 3);
+    const double deviation = step.deviation(p).value_or(0.0);
+    if (step.samples < kEnough) {
+      judgement.wants_samples = true;
+      judgement.add(step.samples < kFewest ? Grade::do_not_use : Grade::use_with_care,
+                    std::to_string(step.samples) + (step.samples == 1 ? " view is" : " views are") +
+                        " too few for the lens of '" + camera +
+                        "', and their +- mean little; take 20, tilted by 30 degrees to all sides");
+    }
+    if (deviation > kKnown && std::isfinite(deviation)) {
+      judgement.wants_samples = true;
+      judgement.add(Grade::do_not_use, "these views do not tell the focal length of '" + camera +
+                                           "' (+- " + reading(1e2 * deviation, "1") +
+                                           " %): tilt the target by 30 degrees to all sides");
+    }
+  }
+}
+
 /// Halves of the samples that put pixels apart, and residuals that depend on the place in the image.  Only if each sample
 /// has a pose of its own: else a robot that errs in some poses looks alike, because poses and places go together.
 inline void judge_projection(const Assessment& step, Judgement& judgement) {

@@ -26,7 +26,9 @@ void set_camera(std::vector<Sample>& samples, const std::string& argument,
       sensors.insert(observation.sensor);
       if (observation.sensor != name) continue;
       ++seen;
-      if (observation.camera) continue;
+      const bool is_known = observation.camera &&
+                            (observation.camera->k[0] != 0.0 || observation.camera->p[0] != 0.0);
+      if (is_known) continue;  // a photograph has the size of its image alone
       observation.camera = camera;
       ++set;
     }

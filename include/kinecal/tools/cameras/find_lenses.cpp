@@ -19,9 +19,9 @@
 #include "kinecal/tools/cameras/start_cameras.hpp"
 #include "kinecal/tools/cameras/trial_config.ipp"
 #include "kinecal/tools/cameras/tried_lens.ipp"
+#include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/folded_lens.hpp"
 #include "kinecal/trust/held_out.hpp"
-#include "kinecal/trust/observability.hpp"
 
 namespace kinecal {
 
@@ -38,42 +38,49 @@ constexpr std::array<std::array<std::string_view, 2>, 6> kLenses = {
      {RationalPolynomial::kName, ""},
      {ThinPrism::kName, ""}}};
 
-/// Makes a held coefficient zero.
-void drop_held(const TriedLens& lens, const std::string& camera, std::vector<Sample>& samples) {
-  if (lens.held.empty()) return;
-  const std::shared_ptr<const AnySensor> sensor = any_built_in(lens_camera(lens.name));
-  const auto coefficients = sensor->parameters().subspan(kIntrinsics);
-  const auto held = std::find_if(coefficients.begin(), coefficients.end(),
-                                 [&](const ParameterInfo& info) { return info.name == lens.held; });
-  const auto place = static_cast<std::size_t>(held - coefficients.begin());
-  for (Sample& sample : samples) {
-    for (Observation& seen : sample.observations) {
-      if (seen.sensor != camera || !seen.camera || seen.camera->d.size() <= place) continue;
-      seen.camera->d[place] = 0.0;
+/// The parameters of a camera that samples do not determine, or hardly.
+struct Undetermined {
+  std::string not_at_all, hardly;  ///< the first of each; empty: there is none
+};
+
+[[nodiscard]] Undetermined undetermined(const CalibrationStep& step, ParameterValues values,
+                                        const ParameterTable& table,
+                                        const std::vector<Sample>& samples,
+                                        const std::set<std::string>& of) {
+  constexpr double kTakesPart = 0.01;
+  const Assessment found = assess(*step.problem, step.free, values, samples, {.folds = 0});
+  Undetermined all;
+  for (const Combination& changes : found.observability.unobservable) {
+    for (const auto& [parameter, factor] : changes) {
+      const bool takes_part = std::abs(factor) > kTakesPart && of.contains(table[parameter].name);
+      if (takes_part && all.not_at_all.empty()) all.not_at_all = table[parameter].name;
     }
   }
+  for (const int parameter : found.weak.parameters) {
+    if (of.contains(table[parameter].name) && all.hardly.empty()) {
+      all.hardly = table[parameter].name;
+    }
+  }
+  return all;
 }
 
-/// A parameter of a camera that samples do not determine; empty if they determine all.
-[[nodiscard]] std::string undetermined(const CalibrationStep& step, ParameterValues values,
-                                       const ParameterTable& table,
-                                       const std::set<std::string>& of) {
-  constexpr double kTakesPart = 0.01;
-  for (const Combination& changes : observability(*step.problem, step.free, values).unobservable) {
-    for (const auto& [parameter, factor] : changes) {
-      if (std::abs(factor) > kTakesPart && of.contains(table[parameter].name)) {
-        return table[parameter].name;
-      }
+/// A view with corners that are far off must not decide: each counts less beyond a few pixels.
+void bound_outliers(Config& config) {
+  constexpr double kFar = 3.0;  // pixels, or sigma
+  for (StepConfig& step : config.steps) {
+    for (BlockConfig& block : step.error_blocks) {
+      const BlockEntry* entry = registry().block(block.type);
+      const bool is_of_pixels = entry != nullptr && entry->read_as == PointToPixel::kType;
+      if (is_of_pixels && block.loss.type == "none") block.loss = {"huber", kFar};
     }
   }
-  return "";
 }
 
 /// Calibrates a lens and predicts what was held out.
 void try_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
   Diagnostics diagnostics;
+  bound_outliers(lens.config);
   start_cameras(lens.config, robot, lens.samples, diagnostics);
-  drop_held(lens, camera.name, lens.samples);
   choose_lenses(lens.config, lens.samples, diagnostics);
   choose_images(lens.config, robot, lens.samples, diagnostics);
   constexpr int kEnough = 100;  // iterations: a lens that does not fit is not worth more
@@ -99,12 +106,13 @@ void try_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
     lens.fault = fmt::format("folds over {:.0f} px from the center", folds.front().radius);
     return;
   }
-  const std::string free =
-      undetermined(last, values, result.table, names_with_lens(camera, lens.name));
-  if (!free.empty()) {
-    lens.fault = "samples do not determine " + free;
+  const Undetermined unknown =
+      undetermined(last, values, result.table, lens.samples, names_with_lens(camera, lens.name));
+  if (!unknown.not_at_all.empty()) {
+    lens.fault = "samples do not determine " + unknown.not_at_all;
     return;
   }
+  lens.hardly = unknown.hardly;
   try {
     lens.squares = held_out_squares(*last.problem, last.free, values, lens.samples);
   } catch (const std::domain_error&) {
@@ -119,8 +127,31 @@ void try_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
     text += text.empty() ? "" : ", ";
     text += lens.fault.empty() ? fmt::format("{} {:.4g} px", lens.text(), lens.error())
                                : fmt::format("{}: {}", lens.text(), lens.fault);
+    if (!lens.hardly.empty()) text += fmt::format(" (hardly determines {})", lens.hardly);
   }
   return text;
+}
+
+/// Why no lens fits: once, if it is the same for all.
+[[nodiscard]] std::string faults_text(const std::vector<TriedLens>& tried) {
+  const std::string& fault = tried.front().fault;
+  const bool is_same = std::all_of(tried.begin(), tried.end(),
+                                   [&](const TriedLens& lens) { return lens.fault == fault; });
+  return is_same ? fault : errors_text(tried);
+}
+
+/// The first lens that no other one beats; nullptr if none fits.
+/// @param weak  also those with a parameter that samples hardly determine
+[[nodiscard]] const TriedLens* best_of(const std::vector<TriedLens>& tried, bool weak) {
+  const auto fits = [&](const TriedLens& lens) {
+    return lens.fault.empty() && (weak || lens.hardly.empty());
+  };
+  const auto best = std::find_if(tried.begin(), tried.end(), [&](const TriedLens& one) {
+    return fits(one) && std::none_of(tried.begin(), tried.end(), [&](const TriedLens& other) {
+             return fits(other) && other.beats(one);
+           });
+  });
+  return best == tried.end() ? nullptr : &*best;
 }
 
 }  // namespace
@@ -135,26 +166,15 @@ void find_lenses(Config& config, const Robot& robot, std::vector<Sample>& sample
     const Config alone = detail::without_others(given, robot, camera);
     for (const auto& [lens, superfluous] : detail::kLenses) {
       const std::string name(lens), held(superfluous);
-      tried.push_back({name, held, detail::with_lens(alone, camera, name, held), samples, {}, {}});
+      tried.push_back(
+          {name, held, detail::with_lens(alone, camera, name, held), samples, {}, {}, {}});
       detail::try_lens(robot, camera, tried.back());
     }
-    const auto fits = [](const detail::TriedLens& lens) { return lens.fault.empty(); };
-    const auto best = std::find_if(tried.begin(), tried.end(), [&](const detail::TriedLens& one) {
-      return fits(one) &&
-             std::none_of(tried.begin(), tried.end(), [&](const detail::TriedLens& other) {
-               return fits(other) && other.beats(one);
-             });
-    });
-    if (best == tried.end()) {
-      const std::string& fault = tried.front().fault;
-      const bool same = std::all_of(tried.begin(), tried.end(),
-                                    [&](const auto& lens) { return lens.fault == fault; });
-      if (same) {
-        diagnostics.errors.push_back(fault);
-      } else {
-        diagnostics.error(camera.place, fmt::format("sensor '{}': no lens fits: {}", camera.name,
-                                                    detail::errors_text(tried)));
-      }
+    const detail::TriedLens* best = detail::best_of(tried, false);
+    if (best == nullptr) best = detail::best_of(tried, true);
+    if (best == nullptr) {
+      diagnostics.error(camera.place, fmt::format("sensor '{}': no lens fits: {}", camera.name,
+                                                  detail::faults_text(tried)));
       continue;
     }
     diagnostics.note(

@@ -8,7 +8,8 @@
 // each sample that was held out gets the mean square of its residuals, its own pose fitted to it.  One lens beats
 // another one if its mean squares, or their logarithms, are smaller on average over samples, beyond chance by Student's
 // t at 5 %.  A lens that folds over where features are, does not fit at all, or has a parameter that the samples do not
-// determine, is out.  Each camera is tried alone.
+// determine, is out; so is one with a parameter that they hardly determine, unless all have one.  Each camera is tried
+// alone.  Corners beyond three pixels count less.
 // Source: Vuong, Likelihood Ratio Tests for Model Selection and Non-Nested Hypotheses, 1989.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -38,16 +38,29 @@ namespace {
   return {box.min().x() + box.max().x() + 1.0, box.min().y() + box.max().y() + 1.0};
 }
 
+/// True if a parameter of a camera is free in some step.
+[[nodiscard]] bool is_free(const Config& config, const std::string& name) {
+  return std::any_of(config.steps.begin(), config.steps.end(), [&](const StepConfig& step) {
+    return std::any_of(step.free_params.begin(), step.free_params.end(),
+                       [&](const FreeParamConfig& free) { return free.name == name; });
+  });
+}
+
+/// Makes the coefficients zero that are held: nothing is known of them.
+void drop_held(const Config& config, const ModelConfig& camera, CameraInfo& info) {
+  const std::shared_ptr<const AnySensor> sensor = sensor_of(camera);
+  const auto coefficients = sensor->parameters().subspan(kIntrinsics);
+  for (std::size_t i = 0; i < std::min(coefficients.size(), info.d.size()); ++i) {
+    if (!is_free(config, parameter_name(camera.param_name, coefficients[i].name))) info.d[i] = 0.0;
+  }
+}
+
 /// True if all intrinsics of a camera are free in some step.
 [[nodiscard]] bool has_free_intrinsics(const Config& config, const ModelConfig& camera) {
   const std::shared_ptr<const AnySensor> sensor = sensor_of(camera);
   const auto all = sensor->parameters().first(kIntrinsics);
   return std::all_of(all.begin(), all.end(), [&](const ParameterInfo& info) {
-    const std::string name = parameter_name(camera.param_name, info.name);
-    return std::any_of(config.steps.begin(), config.steps.end(), [&](const StepConfig& step) {
-      return std::any_of(step.free_params.begin(), step.free_params.end(),
-                         [&](const FreeParamConfig& free) { return free.name == name; });
-    });
+    return is_free(config, parameter_name(camera.param_name, info.name));
   });
 }
 
@@ -76,8 +89,7 @@ void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samp
         continue;
       }
       const std::array<double, 2> size = detail::image_size_of(info, views);
-      const auto single =
-          single_camera(views, size[0], size[1], detail::options_of(*pair.camera).lens);
+      auto single = single_camera(views, size[0], size[1], detail::options_of(*pair.camera).lens);
       if (!single) {
         diagnostics.error(pair.camera->place,
                           fmt::format("camera '{}': no view of '{}' has four corners of a flat "
@@ -86,6 +98,7 @@ void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samp
                                       pair.camera->name, pair.target->name));
         continue;
       }
+      if (!pair.camera->lens.empty()) detail::drop_held(config, *pair.camera, single->info);
       detail::set_info(pair.camera->name, single->info, samples);
       for (std::size_t s = 0; s < views.size(); ++s) {
         if (single->poses[s]) of.poses.emplace(s, *single->poses[s]);

@@ -41,6 +41,7 @@ struct TriedLens {
   std::vector<Sample> samples;
   std::vector<double> squares;  ///< held_out_squares()
   std::string fault;            ///< why it is out; empty: it is not
+  std::string hardly;           ///< a parameter that the samples hardly determine; empty: none
 
   /// "plumb_bob without k3"
   [[nodiscard]] std::string text() const { return held.empty() ? name : name + " without " + held; }
