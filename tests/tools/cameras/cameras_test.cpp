@@ -23,6 +23,7 @@ using test::Cameras, test::cameras_config, test::two_cameras, test::two_fisheyes
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// The corners of lens_mrcal, with nothing known of the camera but the size of its image.
 std::vector<Sample> overpass(const std::string& folder) {
@@ -177,6 +178,49 @@ TEST(CamerasAlone, AnOrdinaryLensIsPlumbBob) {
               ElementsAre(HasSubstr("taken as plumb_bob without k3"),
                           HasSubstr("taken as plumb_bob without k3"),
                           HasSubstr("no camera shows where the target was")));
+}
+
+/// Views of one camera that see the whole board.
+std::vector<Sample> whole_views(std::size_t count, double off_by = 0.0) {
+  std::vector<Sample> views;
+  for (Sample& sample :
+       two_cameras("plumb_bob", 520.0, {-0.1, 0.02, 1e-3, 0.0, 0.0}, {0, 0, 0, 0, 0}, 0.2)
+           .samples) {
+    if (sample.observation("left")->features.size() < 48 || views.size() == count) continue;
+    std::erase_if(sample.observations, [](const Observation& o) { return o.sensor == "right"; });
+    for (Observation& seen : sample.observations) {
+      if (seen.sensor == "left" && views.size() == 1) seen.features[7].point.x() += off_by;
+    }
+    views.push_back(std::move(sample));
+  }
+  return views;
+}
+
+TEST(CamerasAlone, FewViewsAreNoResult) {
+  const std::string text = cameras_config({"left"}, "plumb_bob", "k1 k2");
+  const auto judged = [&](std::size_t count) {
+    Cameras camera(text, whole_views(count));
+    EXPECT_THAT(camera.diagnostics.errors, IsEmpty());
+    return calibrate_and_judge(camera.calibration, camera.samples).judgement;
+  };
+  EXPECT_EQ(judged(1).verdict, Grade::do_not_use);
+  EXPECT_THAT(judged(1).reasons,
+              testing::Contains(HasSubstr("1 view is too few for the lens of 'left'")));
+  EXPECT_THAT(judged(5).reasons, testing::Contains(HasSubstr("5 views are too few")));
+  EXPECT_THAT(judged(9).reasons, Not(testing::Contains(HasSubstr("too few"))));
+}
+
+TEST(CamerasAlone, HeldCoefficientsAreZero) {
+  Cameras camera(cameras_config({"left"}, "plumb_bob", "k1 k2 p1 p2"), whole_views(9));
+  ASSERT_THAT(camera.diagnostics.errors, IsEmpty());
+  EXPECT_EQ(camera.info("left").d.at(4), 0.0);
+  EXPECT_NEAR(camera.info("left").d.at(0), -0.1, 0.02);
+}
+
+TEST(CamerasAlone, OneBadCornerDoesNotDecideTheLens) {
+  Cameras camera(initial_cameras({"left"}), whole_views(9, 120.0));
+  ASSERT_THAT(camera.diagnostics.errors, IsEmpty());
+  EXPECT_EQ(camera.config.steps.front().models[1].lens, "plumb_bob");
 }
 
 TEST(CamerasAlone, WhatCannotBeIsSaid) {
