@@ -66,12 +66,16 @@ void leave_open(Input& input, const InputOptions& options) {
   }
 }
 
+/// True if a lens is to be found.
+bool searches_lenses(const Config& config) {
+  const std::vector<ModelConfig> models = detail::models_of(config);
+  return std::any_of(models.begin(), models.end(),
+                     [](const ModelConfig& model) { return model.lens == kAnyLens; });
+}
+
 /// True if a configuration leaves open where cameras or targets begin, or lenses.
 bool leaves_open(const Config& config) {
-  const std::vector<ModelConfig> models = detail::models_of(config);
-  return !config.per_sample.empty() ||
-         std::any_of(models.begin(), models.end(),
-                     [](const ModelConfig& model) { return model.lens == kAnyLens; });
+  return !config.per_sample.empty() || searches_lenses(config);
 }
 
 /// What configuration and samples leave open about cameras: as the first file has it, or by these samples.
@@ -162,7 +166,11 @@ Input read_input(const InputOptions& options, const Input* first) {
   const bool is_open =
       may_be_open && (is_proposed || options.nothing_free == NothingFree::is_allowed ||
                       (configuration && frees_nothing(*configuration)));
-  if (configuration && !is_open) hold_parameters(*configuration, options.hold, diagnostics);
+  const bool waits =
+      configuration && searches_lenses(*configuration);  // what is free is not known yet
+  if (configuration && !is_open && !waits) {
+    hold_parameters(*configuration, options.hold, diagnostics);
+  }
   Recording recording = read_recordings(options.samples, diagnostics);
   input.samples = std::move(recording.samples);
   if (recording.urdf.empty()) recording.urdf = options.urdf_text;
@@ -195,6 +203,10 @@ Input read_input(const InputOptions& options, const Input* first) {
       add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
     }
     if (!prepare(input, first)) return input;
+    if (waits && !is_open && first == nullptr) {
+      hold_parameters(input.config, options.hold, diagnostics);
+      if (diagnostics.errors.size() != before) return input;
+    }
     is_open ? leave_open(input, options) : assemble_input(input, options);
     return input;
   }

@@ -470,7 +470,9 @@ TEST_F(SetCamera, FillsWhatHasNoCamera) {
 
 TEST_F(SetCamera, LeavesWhatWasRecordedAndSaysSo) {
   std::vector<Sample> samples = two_samples();
+  samples[0].observations[0].camera = CameraInfo{};  // as photographs have it: nothing but a size
   samples[1].observations[0].camera = CameraInfo{};
+  samples[1].observations[0].camera->k = kMatrix;
   set_camera(samples, argument("camera", kKalibr) + ":cam1", diagnostics_);
   EXPECT_EQ(samples[0].observations[0].camera->width, 1280);
   EXPECT_EQ(samples[1].observations[0].camera->width, 0);
