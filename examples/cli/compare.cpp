@@ -10,6 +10,9 @@
 #include "commands.hpp"
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/doubts/rising.hpp"
+#include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/config/parameters_from_config.hpp"
+#include "kinecal/config/registry.hpp"
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/report/charts/parameters.hpp"
@@ -89,6 +92,27 @@ void check_same_robot(const Assembled& a, const Assembled& b) {
                   a.result.folder, a.result.robot.name(), b.result.folder, b.result.robot.name()));
 }
 
+/// The lens of the camera that has a parameter; empty if it is of no camera.
+std::string lens_of_parameter(const Assembled& of, const std::string& name) {
+  for (const ModelConfig& model : detail::models_of(of.result.config)) {
+    const SensorEntry* entry = registry().sensor(model.type);
+    const bool has_lens = entry != nullptr && entry->has_lens;
+    if (has_lens && of.owner(name) == model.param_name) return model.lens;
+  }
+  return "";
+}
+
+/// Cameras alone begin where their photographs say, so their parameters are compared as camera files have them.
+std::string why_not_cameras(const Assembled& a, const Assembled& b, const std::string& name) {
+  if (a.result.config.per_sample.empty() && b.result.config.per_sample.empty()) return "";
+  const std::string of_a = lens_of_parameter(a, name), of_b = lens_of_parameter(b, name);
+  if (of_a.empty() && of_b.empty()) return "";
+  if (of_a != of_b) return fmt::format("is of lens {} in one, {} in the other", of_a, of_b);
+  const bool are_known =
+      a.result.camera_numbers.contains(name) && b.result.camera_numbers.contains(name);
+  return are_known ? "" : "begins at other intrinsics; compare the camera files";
+}
+
 /// Why the numbers of a parameter do not mean the same in both; empty if they do.
 std::string why_not(const Assembled& a, const Assembled& b, const std::string& name) {
   for (const Assembled* one : {&a, &b}) {
@@ -99,6 +123,7 @@ std::string why_not(const Assembled& a, const Assembled& b, const std::string& n
       return "is not determined in " + one->result.folder + ", or at its bound";
     }
   }
+  if (const std::string why = why_not_cameras(a, b, name); !why.empty()) return why;
   if (a.result.urdf_text == b.result.urdf_text) return "";
   const std::string& owner = a.owner(name);
   if (a.result.robot.has_joint(owner)) {
@@ -113,8 +138,16 @@ std::string why_not(const Assembled& a, const Assembled& b, const std::string& n
   return is_frame ? "" : "may begin at other settings: the URDFs differ";
 }
 
+bool is_intrinsic(const std::string& name) {
+  return name.ends_with("_fx") || name.ends_with("_fy") || name.ends_with("_cx") ||
+         name.ends_with("_cy");
+}
+
 Comparison compared(const Assembled& a, const Assembled& b) {
   Comparison all;
+  const auto add = [&](const Difference& difference) {
+    (difference.times() > kMoved ? all.moved : all.equal).push_back(difference);
+  };
   std::vector<std::string> names;
   for (const Assembled* one : {&a, &b}) {
     for (const auto& [name, deviation] : one->result.deviations) names.push_back(name);
@@ -126,14 +159,19 @@ Comparison compared(const Assembled& a, const Assembled& b) {
       all.others.push_back({name, why});
       continue;
     }
+    if (!a.result.config.per_sample.empty() && a.result.camera_numbers.contains(name)) {
+      const StoredNumber &of_a = a.result.camera_numbers.at(name),
+                         &of_b = b.result.camera_numbers.at(name);
+      add({name, is_intrinsic(name) ? "px" : "1", of_a.value, of_b.value,
+           std::hypot(of_a.deviation, of_b.deviation)});
+      continue;
+    }
     const bool is_offset = a.owner(name) == name;
     const auto value = [&](const Assembled& of) {
       return of.result.values.at(name) + (is_offset ? of.rising_of_joint(name) : 0.0);
     };
-    const Difference difference{
-        name, a.result.units.at(name), value(a), value(b),
-        std::hypot(a.result.deviations.at(name), b.result.deviations.at(name))};
-    (difference.times() > kMoved ? all.moved : all.equal).push_back(difference);
+    add({name, a.result.units.at(name), value(a), value(b),
+         std::hypot(a.result.deviations.at(name), b.result.deviations.at(name))});
   }
   std::stable_sort(all.moved.begin(), all.moved.end(),
                    [](const auto& x, const auto& y) { return x.times() > y.times(); });

@@ -43,6 +43,25 @@ TEST_F(CamerasProgram, FindAFisheyeFromCornersAlone) {
   EXPECT_THAT(verify.err, HasSubstr("has a pose of its own in each sample"));
 }
 
+/// The search begins elsewhere with other photographs, and parameters count from there: cameras are compared as their
+/// files have them.
+TEST_F(CamerasProgram, AreComparedByTheirNumbers) {
+  const std::string all = test::wide_camera_samples();
+  std::size_t half = 0;
+  for (int i = 0; i < 14; ++i) half = all.find("---", half + 3);
+  write("samples.yaml", all);
+  write("half.yaml", all.substr(0, half + 4));
+  ASSERT_EQ(kinecal("init --cameras camera --target checkerboard").code, 0);
+  for (const std::string& name : std::vector<std::string>{"samples", "half"}) {
+    const test::Outcome done = kinecal("calibrate --config calibrate.yaml --samples " + name +
+                                       ".yaml --output of_" + name);
+    ASSERT_EQ(done.code, 0) << done.out << done.err;
+  }
+  const test::Outcome compared = kinecal("compare of_samples of_half");
+  EXPECT_EQ(compared.code, 0) << compared.out << compared.err;
+  EXPECT_THAT(compared.out, testing::AnyOf(HasSubstr("0 of "), HasSubstr("is of lens")));
+}
+
 TEST_F(CamerasProgram, AGivenLensAndItsCoefficients) {
   write("samples.yaml", test::wide_camera_samples());
   write("cameras.yaml",

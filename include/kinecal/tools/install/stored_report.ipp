@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/files/json/json_value.hpp"
 #include "kinecal/files/poses/pose_numbers.hpp"
 #include "kinecal/report/json.hpp"
@@ -156,6 +157,22 @@ inline void read_images(const JsonValue& report, Config& config) {
   }
 }
 
+/// Reads the numbers of cameras.
+inline void read_cameras(const JsonValue& report, StoredResult& result) {
+  if (!report.find("cameras")) return;  // an older report
+  for (const JsonValue& camera : report.list("cameras")) {
+    if (!camera.find("numbers")) continue;
+    for (const ModelConfig& model : models_of(result.config)) {
+      if (model.name != camera.text("sensor")) continue;
+      for (const auto& [name, number] : camera.at("numbers").fields()) {
+        result.camera_numbers[parameter_name(model.param_name, name)] = {
+            number.number("value"), number.find("sigma") ? number.number("sigma")
+                                                         : std::numeric_limits<double>::infinity()};
+      }
+    }
+  }
+}
+
 /// Reads the rest of report.json.
 /// @param values_file  path of calibration.yaml, for messages
 /// @throws JsonError  if something is missing or is not what it should be
@@ -172,6 +189,7 @@ inline void read_calibration(const std::string& content, const std::string& valu
   read_noise(report, format, result);
   read_poses(report, result);
   read_images(report, result.config);
+  read_cameras(report, result);
 }
 
 }  // namespace kinecal::detail

@@ -33,6 +33,11 @@ struct PoseInQuestion {
   double position = 0.0;  ///< standard deviation of the position, metres
 };
 
+/// A number of a camera file, and its standard deviation: infinite if it was not calibrated.
+struct StoredNumber {
+  double value = 0.0, deviation = 0.0;  ///< pixels, or as D has it
+};
+
 /// A result and what it was calibrated with.
 struct StoredResult {
   std::string folder;                           ///< as the user gave it
@@ -54,6 +59,8 @@ struct StoredResult {
   RecordedPoses poses;                        ///< those of the samples
   std::map<std::string, double> deviations;  ///< of calibrated parameters; infinite: not determined
   std::map<std::string, std::string> units;  ///< of calibrated parameters
+  /// Intrinsics and coefficients as camera files have them, by parameter; of cameras that report.json has a map of.
+  std::map<std::string, StoredNumber> camera_numbers;
   /// What the driver adds to readings by calibrated.urdf less by the original one, by joint; not zero:
   /// <calibration rising>, and offsets of <ros2_control>.
   std::map<std::string, double> added_offsets;
