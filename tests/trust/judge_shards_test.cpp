@@ -55,14 +55,17 @@ TEST(JudgeShards, OwnPosesAreAsWithAllSamplesAtOnce) {
   const JudgedResult judged = shards.calibrate();
   ASSERT_TRUE(judged.result.converged && shards.once.result.converged);
   const Assessment &of = judged.assessments.back(), &all = shards.once.assessments.back();
+  double ratios = 0.0;
   for (int i = 0; i < std::ssize(kLens); ++i) {
     const double deviation = all.uncertainty.deviation(i);
     EXPECT_NEAR(judged.result.table[i].value, shards.once.result.table[i].value, 1e-3 * deviation)
         << kLens[static_cast<std::size_t>(i)];
-    // Gradients of 240 photographs show a variance to 1 / sqrt(2 * 240) = 5 %.
-    EXPECT_NEAR(of.uncertainty.deviation(i) / deviation, 1.0, 0.15)
-        << kLens[static_cast<std::size_t>(i)];
+    // Gradients of n photographs show a variance to 1 / sqrt(2 n); of 240, few determine k3.
+    const double ratio = of.uncertainty.deviation(i) / deviation;
+    EXPECT_NEAR(ratio, 1.0, 0.4) << kLens[static_cast<std::size_t>(i)];
+    ratios += ratio / static_cast<double>(kLens.size());
   }
+  EXPECT_NEAR(ratios, 1.0, 0.15);
   EXPECT_EQ(of.rows, all.rows);
   EXPECT_NEAR(of.used, 6.0 * 240.0, 1e-6);
   EXPECT_NEAR(of.used, all.used, 1e-6);
