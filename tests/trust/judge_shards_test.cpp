@@ -18,7 +18,9 @@ struct InShards {
 
   InShards(Photographs photographs, std::vector<std::string> free)
       : all(std::move(photographs)), names(std::move(free)), at_once(all.calibration(names)) {
-    once = calibrate_and_judge(at_once, all.samples, {.keep_outliers = true});
+    ProcedureOptions options;
+    options.keep_outliers = true;
+    once = calibrate_and_judge(at_once, all.samples, options);
   }
   [[nodiscard]] JudgedResult calibrate(const ShardExchange& exchange = {}) {
     Photographs first = all;
