@@ -41,9 +41,12 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
     gravity->report_unknown();
   }
   if (const auto link = map.text("payload_link")) progress.config.payload_link = *link;
+  std::vector<FreeParamConfig>& frames = progress.config.per_sample;
   for (const ConfigEntry& entry : map.list("per_sample")) {
     if (const auto name = config_text(entry.value)) {
-      progress.config.per_sample.push_back({*name, entry.place});
+      if (std::ranges::find(frames, *name, &FreeParamConfig::name) == frames.end()) {
+        frames.push_back({*name, entry.place});
+      }
     } else {
       map.error(entry.place,
                 "per_sample: " + describe_config(entry.value) + " is not the name of a frame");

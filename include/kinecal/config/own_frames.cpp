@@ -78,6 +78,13 @@ Robot with_own_frames(const Robot& robot, Config& config, std::span<const Sample
                                     frame.name, to_string(joint->type)));
       continue;
     }
+    if (frame.name == config.base_link) {
+      diagnostics.error(frame.place,
+                        fmt::format("per_sample: '{}' is the base_link, in which measurements are "
+                                    "compared; it has no pose of its own in each sample",
+                                    frame.name));
+      continue;
+    }
     const std::string parent = detail::move_models(config, frame.name, samples);
     if (parent.empty()) {
       const std::set<std::string> recorded = detail::feature_frames(samples);

@@ -246,6 +246,18 @@ TEST(CamerasAlone, WhatCannotBeIsSaid) {
   EXPECT_THAT(
       errors(unknown, {one}),
       testing::Contains(HasSubstr("per_sample: 'bord' is neither a joint of the robot nor")));
+  std::string base = text;
+  base.replace(base.find("base_link: camera"), 17, "base_link: board");
+  EXPECT_THAT(errors(base, {one}),
+              testing::Contains(HasSubstr("cameras.yaml:2: per_sample: 'board' is the base_link")));
+}
+
+TEST(CamerasAlone, AFrameThatIsNamedTwiceIsOneFrame) {
+  std::string text = cameras_config({"camera"}, "equidistant", "k1");
+  text.replace(text.find("[board]"), 7, "[board, board]");
+  Diagnostics diagnostics;
+  EXPECT_EQ(parse_config(text, "cameras.yaml", diagnostics).per_sample.size(), 1u);
+  EXPECT_THAT(diagnostics.errors, testing::IsEmpty());
 }
 
 /// The start of a lens is close to the lens that it is to be like.
