@@ -180,6 +180,29 @@ TEST(CamerasAlone, AnOrdinaryLensIsPlumbBob) {
                           HasSubstr("no camera shows where the target was")));
 }
 
+/// A rig in which each sample has the image that the right camera took in another one.
+std::vector<Sample> paired_with(const std::vector<Sample>& right, std::vector<Sample> samples) {
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    auto& seen = samples[s].observations;
+    std::erase_if(seen, [](const Observation& o) { return o.sensor == "right"; });
+    const Observation* other = right[s].observation("right");
+    if (other != nullptr) seen.push_back(*other);
+  }
+  return samples;
+}
+
+TEST(CamerasAlone, ImagesThatWereNotTakenTogetherAreNamed) {
+  const std::vector<Sample> samples = two_fisheyes(0.2).samples;
+  const std::string text = cameras_config({"left", "right"}, "equidistant", "k1 k2 k3 k4");
+  std::vector<Sample> order = samples;
+  std::rotate(order.begin(), order.begin() + 2, order.end());
+  EXPECT_THAT(Cameras(text, paired_with(order, samples)).diagnostics.errors,
+              ElementsAre(HasSubstr("with its images of 2 samples before it stays where it is")));
+  std::reverse(order.begin(), order.end());
+  EXPECT_THAT(Cameras(text, paired_with(order, samples)).diagnostics.errors,
+              ElementsAre(HasSubstr("were images that are in one sample taken at once")));
+}
+
 /// Views of one camera that see the whole board.
 std::vector<Sample> whole_views(std::size_t count, double off_by = 0.0) {
   std::vector<Sample> views;

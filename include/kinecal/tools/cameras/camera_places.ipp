@@ -22,15 +22,21 @@ struct SeenTarget {
   std::map<std::size_t, Pose<double>> poses;  ///< camera_T_target
 };
 
-/// The pose of one camera in another from the samples that they share: that with the smallest sum of distances to the
-/// others.
-[[nodiscard]] inline std::optional<Pose<double>> between(const SeenTarget& a, const SeenTarget& b) {
-  if (a.pair.joint != b.pair.joint) return std::nullopt;
-  std::vector<Pose<double>> all;
+/// Where one camera stood in another, by each sample that shows a target to both.
+/// @param offset  number of samples by which the second one's images come later
+[[nodiscard]] inline std::vector<Pose<double>> places_in(const SeenTarget& a, const SeenTarget& b,
+                                                         long offset = 0) {
+  std::vector<Pose<double>> places;
+  if (a.pair.joint != b.pair.joint) return places;
   for (const auto& [s, in_a] : a.poses) {
-    const auto in_b = b.poses.find(s);
-    if (in_b != b.poses.end()) all.push_back(in_a * in_b->second.inverse());
+    const auto in_b = b.poses.find(s + static_cast<std::size_t>(offset));
+    if (in_b != b.poses.end()) places.push_back(in_a * in_b->second.inverse());
   }
+  return places;
+}
+
+/// The pose with the smallest sum of distances to the others; nullopt of none.
+[[nodiscard]] inline std::optional<Pose<double>> middle_of(const std::vector<Pose<double>>& all) {
   const auto distance = [](const Pose<double>& x, const Pose<double>& y) {
     return (x.translation - y.translation).norm() +
            log(Matrix3<double>(x.rotation.transpose() * y.rotation)).norm();
@@ -121,7 +127,7 @@ struct SeenTarget {
       const auto at = known.find(of.pair.camera->name);
       if (at == known.end()) continue;
       for (const SeenTarget* next : open) {
-        const auto a_T_b = between(of, *next);
+        const auto a_T_b = middle_of(places_in(of, *next));
         if (!a_T_b || known.contains(next->pair.camera->name)) continue;
         const Pose<double> base_T_camera = at->second * *a_T_b;
         known.emplace(next->pair.camera->name, base_T_camera);

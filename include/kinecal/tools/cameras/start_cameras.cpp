@@ -14,6 +14,7 @@
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/sensors/lens.hpp"
+#include "kinecal/tools/cameras/camera_agreement.ipp"
 #include "kinecal/tools/cameras/camera_checks.ipp"
 #include "kinecal/tools/cameras/camera_places.ipp"
 #include "kinecal/tools/cameras/known_cameras.ipp"
@@ -107,6 +108,7 @@ void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samp
     detail::drop_unseen(pair, *detail::info_of(pair.camera->name, samples), views, of.poses);
     seen.push_back(std::move(of));
   }
+  detail::check_agreement(config, robot, seen, samples, diagnostics);
   const auto cameras = detail::place(config, robot, seen, samples);
   for (const detail::SeenTarget& of : seen) {
     const bool is_lost = detail::is_placed_by_us(config, robot, *of.pair.camera) &&
