@@ -95,6 +95,23 @@ TEST(JudgeShards, ALensThatFoldsOverIsSeen) {
   EXPECT_EQ(judged.judgement.verdict, shards.once.judgement.verdict);
 }
 
+TEST(JudgeShards, OneWrongCornerIsNamedByItsFile) {
+  const auto far_reasons = [](double off_by) {
+    Photographs photographs{test::distorted_camera(), "plumb_bob", {.views = 110}};
+    for (Observation& seen : photographs.samples[100].observations) {
+      if (seen.sensor == "camera") seen.features[7].point.x() += off_by;
+    }
+    InShards shards(photographs, kLens);
+    std::vector<std::string> reasons = shards.calibrate().judgement.reasons;
+    std::erase_if(reasons, [](const std::string& reason) {
+      return reason.find(": a feature of error block") == std::string::npos;
+    });
+    return reasons;
+  };
+  EXPECT_THAT(far_reasons(50.0), testing::ElementsAre(testing::HasSubstr("c: a feature of")));
+  EXPECT_THAT(far_reasons(0.0), testing::IsEmpty());
+}
+
 /// Sums that were found on disk are those of another process, to the last bit.
 TEST(JudgeShards, OwnPosesDoNotDependOnWhatWasComputedBefore) {
   InShards shards({test::distorted_camera(), "plumb_bob", {.views = 110}}, kLens);

@@ -64,11 +64,17 @@ namespace detail {
   return used;
 }
 
+/// What is known of each shard by itself.
+struct EachShard {
+  std::vector<double> misfits;            ///< see ShardAssessment
+  std::vector<Eigen::VectorXd> farthest;  ///< largest weighted residual, by term
+};
+
 /// Adds the sums of all shards.
-/// @param misfits  out: see ShardAssessment
+/// @param each  out
 [[nodiscard]] inline ShardSums all_sums(const Shards& shards, const FreeSet& free,
                                         ParameterValues before, ParameterValues after,
-                                        std::vector<double>& misfits) {
+                                        EachShard& each) {
   const AnyProblem& problem = *shards.problem;
   const auto numbers_of = [&](int shard) {
     return sums_of(*shards.read(shard), free, before, after).packed();
@@ -76,12 +82,35 @@ namespace detail {
   const std::string what = name_at(name_at("sums", free, before), free, after);
   ShardSums sums(free.size(), problem.num_terms());
   for (const std::vector<double>& one : numbers_of_shards(shards, what, numbers_of)) {
-    const auto checked = [&] { return rows_of(problem, sums) - used_of(sums); };
-    const double rows = checked(), cost = sums.cost;
+    ShardSums of(free.size(), problem.num_terms());
+    of.add(one);
     sums.add(one);
-    misfits.push_back(std::sqrt(2.0 * (sums.cost - cost) / std::max(1.0, checked() - rows)));
+    const double checked = rows_of(problem, of) - used_of(of);
+    each.misfits.push_back(std::sqrt(2.0 * of.cost / std::max(1.0, checked)));
+    Eigen::VectorXd& farthest = each.farthest.emplace_back(problem.num_terms());
+    for (int t = 0; t < problem.num_terms(); ++t) {
+      farthest(t) = of.blocks[static_cast<std::size_t>(t)].figures(BlockSums::max_weighted);
+    }
   }
   return sums;
+}
+
+[[nodiscard]] inline std::vector<FarFeature> far_features(const EachShard& each,
+                                                          const ShardSums& sums,
+                                                          const std::vector<BlockNoise>& noise) {
+  constexpr double kFar = 20.0, kShare = 0.05;
+  std::vector<FarFeature> far;
+  for (std::size_t shard = 0; shard < each.farthest.size(); ++shard) {
+    for (std::size_t t = 0; t < noise.size(); ++t) {
+      const double largest = each.farthest[shard](static_cast<Eigen::Index>(t));
+      const double times = largest * noise[t].unit_sigma / noise[t].robust;
+      const double squares = sums.blocks[t].figures(BlockSums::weighted);
+      if (!(times > kFar) || largest * largest <= kShare * squares) continue;
+      far.push_back(
+          {static_cast<int>(shard), noise[t].block, noise[t].unit, times * noise[t].robust, times});
+    }
+  }
+  return far;
 }
 
 /// Inverse of a Hessian in the directions that samples and priors determine; zero in others.
@@ -116,7 +145,8 @@ ShardAssessment assess_shards(const Shards& shards, const FreeSet& free, Paramet
   const FreeSet inside = detail::inside_bounds(problem, free, after, of.at_bound);
   of.parameters = inside.parameters();
   const Coordinates by = detail::coordinates_of(detail::shard_information(shards, inside, after));
-  const detail::ShardSums sums = detail::all_sums(shards, inside, before, after, found.misfits);
+  detail::EachShard each;
+  const detail::ShardSums sums = detail::all_sums(shards, inside, before, after, each);
   of.rows = static_cast<std::int64_t>(detail::rows_of(problem, sums));
   of.used = detail::used_of(sums);
   of.samples = shards.samples;
@@ -127,6 +157,8 @@ ShardAssessment assess_shards(const Shards& shards, const FreeSet& free, Paramet
   detail::mark_undetermined(problem, inside, by, of.uncertainty);
   of.weak = weak_parameters(problem, inside, of.uncertainty);
   found.blocks = detail::statistics_of_blocks(problem, sums);
+  found.far = detail::far_features(each, sums, of.noise);
+  found.misfits = std::move(each.misfits);
   const std::shared_ptr<const AnyProblem> first = shards.read(0);
   if (const auto frames = compared_frames(*first, samples)) {
     const LinearFit fit = linear_fit(*first->evaluator(inside, 1), after, by);

@@ -11,12 +11,22 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "kinecal/solve/shards.hpp"
 #include "kinecal/trust/assess.hpp"
 
 namespace kinecal {
+
+/// A feature that weighs as much as many others together.
+struct FarFeature {
+  int shard = 0;
+  std::string block;      ///< name of its error block
+  std::string unit;       ///< of its residual: "m", "px" or "1"
+  double distance = 0.0;  ///< in `unit`
+  double times = 0.0;     ///< the same over the robust noise of the block
+};
 
 /// The quality of a result.
 struct ShardAssessment {
@@ -27,6 +37,8 @@ struct ShardAssessment {
   /// Of each shard: RMS of its weighted residuals, losses included, by the degrees of freedom that its samples' own poses
   /// leave.
   std::vector<double> misfits;
+  /// Of each shard and error block at most one: 20 times the noise or more, and a twentieth of all squares or more.
+  std::vector<FarFeature> far;
 };
 
 /// @param before   values of all parameters of the table at the start

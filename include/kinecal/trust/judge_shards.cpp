@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "kinecal/text/reading.hpp"
 #include "kinecal/trust/assess_shards.hpp"
 #include "kinecal/trust/estimated_noise.hpp"
 #include "kinecal/trust/shard_folds.ipp"
@@ -28,6 +29,7 @@ class ShardProcedure {
     judged.judgement =
         judge(calibration_.first, judged.result, judged.assessments, options_.doubts);
     judge_misfits(judged.judgement);
+    judge_far(judged.judgement);
     return judged;
   }
 
@@ -154,6 +156,7 @@ class ShardProcedure {
     judged.assessments.push_back(std::move(found.assessment));
     merge_statistics(judged.result.blocks, std::move(found.blocks));
     misfits_ = std::move(found.misfits);
+    far_ = std::move(found.far);
     return true;
   }
 
@@ -173,11 +176,26 @@ class ShardProcedure {
     }
   }
 
+  /// Features that a fit of one file would leave out with their samples.
+  void judge_far(Judgement& judgement) const {
+    for (const FarFeature& far : far_) {
+      char times[48];
+      (void)std::snprintf(times, sizeof times, "%.0f times the noise", far.times);
+      judgement.add(Grade::use_with_care,
+                    calibration_.names[static_cast<std::size_t>(far.shard)] +
+                        ": a feature of error block '" + far.block + "' is " +
+                        reading(far.distance, far.unit) + " off, " + times +
+                        ", and decides a part of the result: kinecal calibrate of this "
+                        "file names its sample");
+    }
+  }
+
   ShardedCalibration& calibration_;
   const ProcedureOptions& options_;
   EstimatedNoise noise_;
   std::map<std::pair<std::size_t, int>, std::shared_ptr<AnyProblem>> problems_;
   std::vector<double> misfits_;
+  std::vector<FarFeature> far_;
 };
 
 }  // namespace

@@ -40,7 +40,8 @@ struct BlockSums {
   Eigen::MatrixXd information;  ///< (free x free) sum of rho' w^2 J^T J
   Eigen::MatrixXd bins;         ///< (bins x 3) distances before, after, and after over sigma
   /// Number of features; sums of distances, squared components and the largest distance, before and
-  /// after; squares of weighted residuals with their losses; rows that samples' own poses use up.
+  /// after; squares of weighted residuals with their losses, and the largest, not squared; rows that samples' own poses use
+  /// up.
   Eigen::VectorXd figures;
 
   enum Figure {
@@ -52,6 +53,7 @@ struct BlockSums {
     squares_after,
     max_after,
     weighted,
+    max_weighted,
     used,
     kFigures
   };
@@ -63,7 +65,7 @@ struct BlockSums {
 
   /// False for the largest distances, which are not sums.
   [[nodiscard]] static bool is_sum(Eigen::Index figure) {
-    return figure != max_before && figure != max_after;
+    return figure != max_before && figure != max_after && figure != max_weighted;
   }
   [[nodiscard]] Statistics statistics(Figure mean, Eigen::Index column) const {
     const double count = std::max(1.0, figures(features));
@@ -160,7 +162,10 @@ inline void add_features(const Term& term, const TermResiduals& rows, ShardSums&
     score += slope * g;
     sums.cost += 0.5 * rho;
     block.figures(BlockSums::features) += 1.0;
-    block.figures(BlockSums::weighted) += slope * r.squaredNorm();
+    const double weighted = slope * r.squaredNorm();
+    double& largest = block.figures(BlockSums::max_weighted);
+    block.figures(BlockSums::weighted) += weighted;
+    largest = std::max(largest, std::sqrt(weighted));
     block.bins(DistanceBins::of(r.norm() / term.weight), 2) += 1.0;
   }
 }
