@@ -112,6 +112,17 @@ TEST(JudgeShards, OneWrongCornerIsNamedByItsFile) {
   EXPECT_THAT(far_reasons(0.0), testing::IsEmpty());
 }
 
+TEST(JudgeShards, AFileThatIsThereTwiceIsNamed) {
+  Photographs photographs{test::distorted_camera(), "plumb_bob", {.views = 110}};
+  photographs.samples.resize(InShards::kThird);
+  photographs.samples.insert(photographs.samples.end(),
+                             photographs.samples.begin() + InShards::kSecond,
+                             photographs.samples.begin() + InShards::kThird);
+  InShards shards(photographs, kLens);
+  EXPECT_THAT(shards.calibrate().judgement.reasons,
+              testing::Contains(testing::HasSubstr("c: has the samples of b; copies count twice")));
+}
+
 /// Sums that were found on disk are those of another process, to the last bit.
 TEST(JudgeShards, OwnPosesDoNotDependOnWhatWasComputedBefore) {
   InShards shards({test::distorted_camera(), "plumb_bob", {.views = 110}}, kLens);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "kinecal/trust/compared_frames.hpp"
@@ -68,6 +69,7 @@ namespace detail {
 struct EachShard {
   std::vector<double> misfits;            ///< see ShardAssessment
   std::vector<Eigen::VectorXd> farthest;  ///< largest weighted residual, by term
+  std::vector<double> costs;              ///< without priors
 };
 
 /// Adds the sums of all shards.
@@ -85,6 +87,7 @@ struct EachShard {
     ShardSums of(free.size(), problem.num_terms());
     of.add(one);
     sums.add(one);
+    each.costs.push_back(of.cost);
     const double checked = rows_of(problem, of) - used_of(of);
     each.misfits.push_back(std::sqrt(2.0 * of.cost / std::max(1.0, checked)));
     Eigen::VectorXd& farthest = each.farthest.emplace_back(problem.num_terms());
@@ -93,6 +96,19 @@ struct EachShard {
     }
   }
   return sums;
+}
+
+/// Shards whose costs are the same to the last bit.
+[[nodiscard]] inline std::vector<std::pair<int, int>> copies_among(
+    const std::vector<double>& costs) {
+  std::map<double, int> first;
+  std::vector<std::pair<int, int>> copies;
+  for (int shard = 0; shard < std::ssize(costs); ++shard) {
+    const double cost = costs[static_cast<std::size_t>(shard)];
+    const auto [known, is_new] = first.emplace(cost, shard);
+    if (!is_new && cost > 0.0) copies.emplace_back(shard, known->second);
+  }
+  return copies;
 }
 
 [[nodiscard]] inline std::vector<FarFeature> far_features(const EachShard& each,
@@ -158,6 +174,7 @@ ShardAssessment assess_shards(const Shards& shards, const FreeSet& free, Paramet
   of.weak = weak_parameters(problem, inside, of.uncertainty);
   found.blocks = detail::statistics_of_blocks(problem, sums);
   found.far = detail::far_features(each, sums, of.noise);
+  found.copies = detail::copies_among(each.costs);
   found.misfits = std::move(each.misfits);
   const std::shared_ptr<const AnyProblem> first = shards.read(0);
   if (const auto frames = compared_frames(*first, samples)) {

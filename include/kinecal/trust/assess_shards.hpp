@@ -12,6 +12,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kinecal/solve/shards.hpp"
@@ -39,6 +40,8 @@ struct ShardAssessment {
   std::vector<double> misfits;
   /// Of each shard and error block at most one: 20 times the noise or more, and a twentieth of all squares or more.
   std::vector<FarFeature> far;
+  std::vector<std::pair<int, int>>
+      copies;  ///< shards with the same samples as an earlier one, and that one
 };
 
 /// @param before   values of all parameters of the table at the start

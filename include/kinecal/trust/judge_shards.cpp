@@ -30,6 +30,7 @@ class ShardProcedure {
         judge(calibration_.first, judged.result, judged.assessments, options_.doubts);
     judge_misfits(judged.judgement);
     judge_far(judged.judgement);
+    judge_copies(judged.judgement);
     return judged;
   }
 
@@ -157,6 +158,7 @@ class ShardProcedure {
     merge_statistics(judged.result.blocks, std::move(found.blocks));
     misfits_ = std::move(found.misfits);
     far_ = std::move(found.far);
+    copies_ = std::move(found.copies);
     return true;
   }
 
@@ -190,12 +192,23 @@ class ShardProcedure {
     }
   }
 
+  /// Files that are there twice.
+  void judge_copies(Judgement& judgement) const {
+    for (const auto& [copy, first] : copies_) {
+      judgement.add(Grade::use_with_care,
+                    calibration_.names[static_cast<std::size_t>(copy)] + ": has the samples of " +
+                        calibration_.names[static_cast<std::size_t>(first)] +
+                        "; copies count twice and say nothing new; leave one out");
+    }
+  }
+
   ShardedCalibration& calibration_;
   const ProcedureOptions& options_;
   EstimatedNoise noise_;
   std::map<std::pair<std::size_t, int>, std::shared_ptr<AnyProblem>> problems_;
   std::vector<double> misfits_;
   std::vector<FarFeature> far_;
+  std::vector<std::pair<int, int>> copies_;
 };
 
 }  // namespace
