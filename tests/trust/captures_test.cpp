@@ -5,6 +5,7 @@
 
 #include <numeric>
 
+#include "kinecal/trust/least_trimmed_squares.ipp"
 #include "support/noisy_scene.hpp"
 #include "support/pixel_scene.hpp"
 
@@ -148,6 +149,20 @@ TEST(Captures, SayWhichFeatureIsOffAndHowFarTheOthersAre) {
   EXPECT_NEAR(error.distance, 0.048, 5.0 * test::kPointNoise);
   EXPECT_LT(error.others, 5.0 * test::kPointNoise);
   EXPECT_GT(error.times, 40.0);
+}
+
+/// A third of the poses that is left out would be all of them.
+TEST(LeastTrimmedSquares, OfOnePoseIsNoStep) {
+  constexpr Eigen::Index kRows = 40, kSize = 3;
+  LinearFit fit;
+  fit.blocks = {{0, 0, 0, kRows}};
+  fit.residual = Eigen::VectorXd::Random(kRows);
+  fit.jacobian = LinearFit::RowMajor::Random(kRows, kSize);
+  fit.loss = Eigen::VectorXd::Ones(kRows);
+  fit.coordinates.basis = Eigen::MatrixXd::Identity(kSize, kSize);
+  fit.prior_gradient = Eigen::VectorXd::Zero(kSize);
+  fit.prior_hessian = Eigen::MatrixXd::Zero(kSize, kSize);
+  EXPECT_EQ(detail::least_trimmed_squares(fit, each_its_own(1)).norm(), 0.0);
 }
 
 TEST(Captures, HaveTheInfluenceThatLeavingThemOutHas) {

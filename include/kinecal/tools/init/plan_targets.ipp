@@ -134,13 +134,11 @@ namespace kinecal::detail {
                     "measure where it stands and how it is turned.");
   for (const std::string& frame : reflectors) add_initial_value(plan, frame, "");
   plan.error_blocks.push_back(
-      {"Both observe the same point.  sigma combines the accuracy of the tracker and the "
-       "repeatability of the robot, in metres: 0.0001 is a guess, write yours.",
+      {"Both observe the same point.",
        "measured",
        {{"type", "chain3d_to_chain3d"},
         {"model_a", name_to_yaml(holder_of(answers))},
         {"model_b", name_to_yaml(tracker_of(answers))},
-        {"sigma", "0.0001"},
         {"loss", "{type: huber, scale: 3.0}"}}});
   if (!determined) {
     keep_near_zero(plan, reflector,
