@@ -221,10 +221,11 @@ std::optional<Fit> fit_and_judge(const CalibrateOptions& options, Input& input) 
   judge_causes(
       {input.config, input.robot, input.urdf_text, input.urdf, fitted.samples, fitted.calibration},
       fitted.findings);
-  if (fitted.findings.judgement.causes == 0 && !input.is_searched) {  // else it is named already
+  if (!input.is_searched) {  // else it is named already
     const WouldHelp help = would_help(input.config, input.robot, fitted.samples, fitted.calibration,
                                       fitted.findings.result);
     fitted.findings.helps = help.sentences;
+    fitted.findings.helps_leave = help.left;
     judge_help(help, fitted.findings.judgement);
   }
   fitted.findings.speeds = how_fast(fitted);

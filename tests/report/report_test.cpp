@@ -195,6 +195,38 @@ TEST(NextStep, HoldsAFrameByItsName) {
   EXPECT_EQ(next_step(all), "hold what these samples do not determine:\n  mount elbow");
 }
 
+TEST(NextStep, LetsIdentifySearchWhereMuchIsToBeHad) {
+  Findings all = findings();
+  all.call = {"kinecal calibrate --output out", "--urdf r.urdf --config c.yaml --samples s", "out"};
+  all.helps_leave = 0.6;
+  EXPECT_THAT(next_step(all), HasSubstr("hold what"));
+  all.helps_leave = 0.1;
+  EXPECT_EQ(next_step(all),
+            "find out what else is wrong:\n"
+            "  kinecal identify --urdf r.urdf --config c.yaml --samples s");
+}
+
+/// Where it began is no guess.
+TEST(NextStep, DoesNotHoldWhatNobodyKnew) {
+  Findings all = findings();
+  all.result.steps[0].starts.frames = {"board"};
+  std::vector<int> axes;
+  for (const char* axis : {"x", "y", "z"}) {
+    axes.push_back(all.result.table.size());
+    all.result.table.add({.name = std::string("board_") + axis});
+  }
+  all.assessments[0].observability.hold = {};
+  all.assessments[0].weak.hold = {axes[0]};
+  EXPECT_EQ(next_step(all), "record more poses");
+  all.assessments[0].weak.hold = {axes[0], 0};
+  EXPECT_EQ(next_step(all), "hold what these samples hardly determine:\n  elbow");
+  all.assessments[0].weak.hold = {};
+  all.assessments[0].observability.hold = axes;
+  EXPECT_THAT(next_step(all), HasSubstr("see where residuals are large"));
+  all.assessments[0].observability.hold = {axes[2]};  // an axis may be chosen freely
+  EXPECT_EQ(next_step(all), "hold what these samples do not determine:\n  board_z");
+}
+
 TEST(TextReport, SaysWhatSolvingTook) {
   CalibrationResult r = findings().result;
   r.steps[0].samples = 100;

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "kinecal/trust/judge_places.ipp"
 #include "support/noisy_scene.hpp"
 
 namespace kinecal {
@@ -167,6 +170,26 @@ TEST(Judge, RefusesWhatDeterminesNothing) {
   expect(judged.judgement(), Grade::do_not_use, "determine none of its 10 free parameters");
   judged.assessments[0].parameters.clear();  // all of them ended at bounds
   expect(judged.judgement(), Grade::good, "");
+}
+
+TEST(Judge, RefusesFramesThatMayBeAnywhere) {
+  ParameterTable table;
+  Assessment step;
+  for (const char* name : {"board_x", "board_y", "board_z"}) {
+    step.parameters.push_back(table.add({.name = name, .unit = "m"}));
+  }
+  step.uncertainty.covariance = Eigen::MatrixXd(Eigen::Matrix3d::Zero());
+  step.uncertainty.deviation =
+      Eigen::VectorXd(Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()));
+  const auto judged = [&](std::vector<Combination> open) {
+    step.observability.unobservable = std::move(open);
+    Judgement judgement;
+    detail::judge_places(step, table, judgement);
+    return judgement;
+  };
+  expect(judged({{{0, 1.0}, {1, 0.5}}, {{1, 1.0}}, {{2, 1.0}, {0, -2.0}}}), Grade::do_not_use,
+         "in all directions where 'board' is");
+  expect(judged({{{0, 1.0}, {1, 0.5}, {2, 1.0}}}), Grade::good, "");  // along a line only
 }
 
 TEST(Judge, WantsMoreResidualsThanParameters) {

@@ -23,6 +23,7 @@ struct Findings : JudgedResult {
                                                    ///< by camera
   std::map<std::string, std::string> lenses = {};  ///< of cameras of raw images: lens_names()
   std::vector<std::string> helps = {};  ///< what would lower the error on held-out poses: sentences
+  double helps_leave = 1.0;             ///< what is left of that error then
   std::vector<std::string> speeds = {};  ///< how fast is still good, where samples moved: sentences
   ReportedSearch search = {};  ///< that chose the free parameters; without steps: there was none
   RecordedPoses poses = {};    ///< of the samples that were used

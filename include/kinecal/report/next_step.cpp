@@ -6,6 +6,7 @@
 #include <set>
 
 #include "kinecal/report/findings.hpp"
+#include "kinecal/report/parameters_text.ipp"
 
 namespace kinecal {
 
@@ -44,16 +45,25 @@ namespace {
   return call.command + options + (wrote && !forced ? " --force" : "");
 }
 
+/// Parameters that may be held where they were: not those of a pose that nobody knew.
+[[nodiscard]] std::vector<int> with_a_value(const Findings& findings, std::vector<int> parameters) {
+  std::erase_if(parameters, [&](int p) { return was_unknown(findings, findings.result.table[p]); });
+  return parameters;
+}
+
 /// Parameters that might as well be held, or that samples do not determine; empty if there are none.
 [[nodiscard]] std::string hold(const Findings& findings) {
   if (findings.assessments.empty()) return {};
   const Assessment& step = findings.assessments.back();
   const bool refused = findings.judgement.verdict == Grade::do_not_use;
-  std::vector<int> parameters = step.weak.hold;
+  std::vector<int> parameters = with_a_value(findings, step.weak.hold);
   std::string why = "what these samples hardly determine";
   if (refused || parameters.empty()) {
-    if (!step.observability.hold.empty()) {
-      parameters = step.observability.hold;
+    std::vector<int> open = step.observability.hold;
+    const std::vector<int> known = with_a_value(findings, open);
+    if (known.size() + 1 < open.size()) open = known;  // one direction may be chosen freely
+    if (!open.empty()) {
+      parameters = open;
       why = "what these samples do not determine";
     }
   }
@@ -74,6 +84,11 @@ namespace {
 std::string next_step(const Findings& findings) {
   const Judgement& judgement = findings.judgement;
   const ProgramCall& call = findings.call;
+  constexpr double kMuch = 0.5;  // of the error on held-out poses
+  if (judgement.verdict != Grade::good && findings.helps_leave < kMuch) {
+    return "find out what else is wrong" +
+           (call.inputs.empty() ? "" : ":\n  kinecal identify " + call.inputs);
+  }
   if (judgement.causes > 0) {
     return std::string(judgement.causes == 1 ? "mend the cause" : "mend the causes") +
            " named under the verdict, and calibrate again";
@@ -91,7 +106,9 @@ std::string next_step(const Findings& findings) {
   }
   const std::string held = detail::hold(findings);
   if (!held.empty()) return held;
-  if (judgement.wants_samples) {
+  const bool is_open =
+      !findings.assessments.empty() && !findings.assessments.back().weak.hold.empty();
+  if (judgement.wants_samples || is_open) {
     return "record more poses" +
            (call.inputs.empty() ? "" : "; which:\n  kinecal plan " + call.inputs);
   }

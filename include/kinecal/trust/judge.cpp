@@ -8,6 +8,7 @@
 #include "kinecal/trust/judge_change.ipp"
 #include "kinecal/trust/judge_lens.ipp"
 #include "kinecal/trust/judge_noise.ipp"
+#include "kinecal/trust/judge_places.ipp"
 #include "kinecal/trust/judge_values.ipp"
 #include "kinecal/trust/plausible_change.ipp"
 #include "kinecal/trust/ruined.hpp"
@@ -175,6 +176,7 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
       detail::judge_change(assessments[s], *step.problem, judgement);
     }
     detail::judge_values(step, result, assessments[s], judgement);
+    if (last) detail::judge_places(assessments[s], result.table, judgement);
     if (last) detail::judge_weak(assessments[s], result.table, judgement);
     if (last) detail::judge_priors(assessments[s], result.table, judgement);
     if (last) detail::judge_pose(assessments[s], judgement);

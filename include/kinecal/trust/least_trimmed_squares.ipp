@@ -132,8 +132,7 @@ inline void concentrate(const PoseSums& sums, std::size_t share, int steps, Trim
   const auto least = static_cast<std::size_t>(std::ceil(n / std::max(1.0, sums.rows()))) + 1;
   constexpr double kEnough =
       4.0;  // rows for each coordinate: with fewer, a share fits its own noise
-  if (fit.size() == 0 || share < least ||
-      sums.rows() * static_cast<double>(share) < kEnough * n) {
+  if (fit.size() == 0 || share < least || sums.rows() * static_cast<double>(share) < kEnough * n) {
     return Eigen::VectorXd::Zero(fit.size());
   }
   const Eigen::VectorXd here = Eigen::VectorXd::Zero(fit.size());

@@ -53,6 +53,8 @@ TEST_F(EnoughSamples, ManyFeaturesOfFewPosesAreADoubt) {
   }
   EXPECT_THAT(found().errors, IsEmpty());
   EXPECT_THAT(found().doubts, ElementsAre(HasSubstr("a pose only has six numbers")));
+  samples.resize(2);  // nearly as many parameters as numbers
+  EXPECT_THAT(found().errors, ElementsAre(HasSubstr("a pose only has six numbers")));
 }
 
 TEST_F(EnoughSamples, AnObservationWithoutFeaturesIsAWarning) {

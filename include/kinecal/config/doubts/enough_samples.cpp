@@ -58,11 +58,17 @@ void check_enough_samples(const Config& config, const Calibration& calibration,
       diagnostics.doubt(place, fmt::format("{} only {}, less than two for each parameter; record "
                                            "more samples or free fewer parameters",
                                            counts, counted(residuals, "residual")));
-    } else if (const std::size_t moving = moving_parameters(step, own);
-               2 * moving > 6 * unlike && step.problem->num_terms() > 0) {
-      diagnostics.doubt(place, fmt::format("{} {}, but a pose only has six numbers, and {} of the "
-                                           "parameters move links; record more poses",
-                                           counts, counted(residuals, "residual"), moving));
+    } else if (const std::size_t moving = moving_parameters(step, own), numbers = 6 * unlike;
+               2 * moving > numbers && step.problem->num_terms() > 0) {
+      const std::string text = fmt::format(
+          "{} {}, but a pose only has six numbers, and {} of the "
+          "parameters move links; record more poses",
+          counts, counted(residuals, "residual"), moving);
+      if (moving > 6 && 5 * moving > 4 * numbers) {  // six are where one thing is
+        diagnostics.error(place, text);
+      } else {
+        diagnostics.doubt(place, text);
+      }
     }
   }
 }

@@ -50,14 +50,12 @@ inline void add_hand_eye(InitPlan& plan, const InitAnswers& answers) {
   const std::string model = holder_of(answers);
   InitEntry block{"", "hand_eye", {}};
   if (answers.camera_type == "camera3d") {
-    block.why = "The camera and model '" + model +
-                "' observe the same points, in the same order.";
+    block.why = "The camera and model '" + model + "' observe the same points, in the same order.";
     block.fields = {{"type", "chain3d_to_chain3d"},
                     {"model_a", name_to_yaml(answers.camera_name)},
                     {"model_b", name_to_yaml(model)}};
   } else {
-    block.why = "The camera sees the points of model '" + model +
-                "', in the same order.";
+    block.why = "The camera sees the points of model '" + model + "', in the same order.";
     block.fields = {{"type", "chain3d_to_camera2d"},
                     {"model_3d", name_to_yaml(model)},
                     {"model_2d", name_to_yaml(answers.camera_name)}};

@@ -133,13 +133,12 @@ namespace kinecal::detail {
                     "Zeros are no guess: kinecal searches for the tracker.  Should it not find it, "
                     "measure where it stands and how it is turned.");
   for (const std::string& frame : reflectors) add_initial_value(plan, frame, "");
-  plan.error_blocks.push_back(
-      {"Both observe the same point.",
-       "measured",
-       {{"type", "chain3d_to_chain3d"},
-        {"model_a", name_to_yaml(holder_of(answers))},
-        {"model_b", name_to_yaml(tracker_of(answers))},
-        {"loss", "{type: huber, scale: 3.0}"}}});
+  plan.error_blocks.push_back({"Both observe the same point.",
+                               "measured",
+                               {{"type", "chain3d_to_chain3d"},
+                                {"model_a", name_to_yaml(holder_of(answers))},
+                                {"model_b", name_to_yaml(tracker_of(answers))},
+                                {"loss", "{type: huber, scale: 3.0}"}}});
   if (!determined) {
     keep_near_zero(plan, reflector,
                    "The arm does not turn about two axes, so samples cannot distinguish all of the "
