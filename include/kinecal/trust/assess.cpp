@@ -115,6 +115,7 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.samples = problem.num_samples();
   const PoseGroups single = pose_groups(problem, samples);
   found.readings = single.readings();
+  found.views = distinct_poses(problem, samples);
   found.one_pose = are_one_pose(problem, samples);
   found.neighbours = neighbours(problem, fit, single);
   const PoseGroups poses = joined(single, found.neighbours.together);

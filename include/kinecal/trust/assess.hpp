@@ -61,6 +61,7 @@ struct Assessment {
   double used = 0.0;         ///< of these, by poses that samples have of their own
   std::int64_t samples = 0;  ///< their number
   double readings = 1.0;     ///< samples per pose: see pose_groups()
+  std::int64_t views = 0;    ///< different poses: see distinct_poses()
   bool one_pose = false;     ///< all samples are of one pose of the robot
   Neighbours neighbours;     ///< whether consecutive poses err alike
   double size = 0.0;         ///< of the robot: longest chain, sum of its links, metres

@@ -165,7 +165,7 @@ ShardAssessment assess_shards(const Shards& shards, const FreeSet& free, Paramet
   const detail::ShardSums sums = detail::all_sums(shards, inside, before, after, each);
   of.rows = static_cast<std::int64_t>(detail::rows_of(problem, sums));
   of.used = detail::used_of(sums);
-  of.samples = shards.samples;
+  of.samples = of.views = shards.samples;
   Eigen::MatrixXd information = sums.priors;
   for (const detail::BlockSums& block : sums.blocks) information += block.information;
   of.noise = detail::noise_of(problem, sums, detail::inverse_in(by, information));

@@ -68,10 +68,12 @@ inline void judge_views(const Assessment& step, const ParameterTable& table, Jud
     if (!name.ends_with("_fx")) continue;
     const std::string camera = name.substr(0, name.size() - 3);
     const double deviation = step.deviation(p).value_or(0.0);
-    if (step.samples < kEnough) {
+    if (step.views < kEnough) {
       judgement.wants_samples = true;
-      judgement.add(step.samples < kFewest ? Grade::do_not_use : Grade::use_with_care,
-                    std::to_string(step.samples) + (step.samples == 1 ? " view is" : " views are") +
+      const std::string different = step.views < step.samples ? " different" : "";
+      judgement.add(step.views < kFewest ? Grade::do_not_use : Grade::use_with_care,
+                    std::to_string(step.views) + different +
+                        (step.views == 1 ? " view is" : " views are") +
                         " too few for the lens of '" + camera +
                         "', and their +- mean little; take 20, tilted by 30 degrees to all sides");
     }

@@ -30,6 +30,19 @@ namespace {
   return at;
 }
 
+/// The same of a pose.
+/// @param turn, shift  within which poses are the same, radians and metres
+[[nodiscard]] Eigen::VectorXd positions_of(const Pose<double>& pose, double turn, double shift) {
+  Eigen::VectorXd at(12);
+  at << pose.rotation.reshaped() / turn, pose.translation / shift;
+  return at;
+}
+
+void append(const Eigen::VectorXd& more, Eigen::VectorXd& at) {
+  at.conservativeResize(at.size() + more.size());
+  at.tail(more.size()) = more;
+}
+
 /// Halves poses at the median of the joint that moves most, `depth` times.
 void halve(const std::vector<Eigen::VectorXd>& at, std::span<int> poses, int depth, int region,
            std::vector<int>& regions) {
@@ -65,26 +78,63 @@ PoseGroups each_its_own(std::size_t samples) {
 namespace detail {
 namespace {
 
-/// @param joints  not empty
-[[nodiscard]] PoseGroups groups_of(const std::map<std::string, double>& joints,
-                                   std::span<const Sample> samples) {
-  struct Pose {
-    Eigen::VectorXd at;  // positions in units of repeatability
-    int number;
-  };
-  std::multimap<double, Pose> poses;  // by the first joint's position
+/// Where everything is that moves in the samples, in units within which it is the same; no rows: nothing moves.
+/// @returns  (coordinates x samples)
+[[nodiscard]] Eigen::MatrixXd places_of(const AnyProblem& problem,
+                                        std::span<const Sample> samples) {
+  constexpr double kRadians = 1e-3, kMetres = 2e-4;  // of measured poses
+  constexpr double kSeen = 0.01;  // rad, and parts of the distance, of a target that nobody moved
+  std::map<std::string, double> joints = repeatable_joints(problem);
+  std::vector<std::string> measured;
+  for (const auto& [name, repeats] : joints) {
+    const bool is_measured =
+        std::any_of(samples.begin(), samples.end(),
+                    [&, of = name](const auto& s) { return s.poses.contains(of); });
+    if (is_measured) measured.push_back(name);
+  }
+  for (const std::string& name : measured) joints.erase(name);
+  const auto& own = problem.poses_of_samples();
+  double distance = 0.0;  // mean, of targets
+  for (const auto& poses : own) {
+    for (const Pose<double>& pose : poses) {
+      distance += pose.translation.norm() / static_cast<double>(own.size() * poses.size());
+    }
+  }
+  Eigen::MatrixXd places(0, std::ssize(samples));
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    Eigen::VectorXd at = positions_of(samples[s], joints);
+    for (const std::string& name : measured) {
+      const auto pose = samples[s].poses.find(name);
+      append(positions_of(pose == samples[s].poses.end() ? Pose<double>{} : pose->second, kRadians,
+                          kMetres),
+             at);
+    }
+    if (s < own.size()) {
+      for (const Pose<double>& pose : own[s])
+        append(positions_of(pose, kSeen, kSeen * distance), at);
+    }
+    if (s == 0) places.resize(at.size(), std::ssize(samples));
+    places.col(static_cast<Eigen::Index>(s)) = at;
+  }
+  return places;
+}
+
+/// @param places  has rows
+[[nodiscard]] PoseGroups groups_of(const Eigen::MatrixXd& places) {
+  std::multimap<double, std::pair<Eigen::Index, int>> poses;  // column and number, by the first row
   PoseGroups groups;
-  for (const Sample& sample : samples) {
-    const Eigen::VectorXd at = positions_of(sample, joints);
-    const auto end = poses.upper_bound(at(0) + 1.0);
-    const auto known = std::find_if(poses.lower_bound(at(0) - 1.0), end, [&](const auto& pose) {
-      return (pose.second.at - at).template lpNorm<Eigen::Infinity>() <= 1.0;
+  for (Eigen::Index s = 0; s < places.cols(); ++s) {
+    const double first = places(0, s);
+    const auto end = poses.upper_bound(first + 1.0);
+    const auto known = std::find_if(poses.lower_bound(first - 1.0), end, [&](const auto& pose) {
+      return (places.col(pose.second.first) - places.col(s)).template lpNorm<Eigen::Infinity>() <=
+             1.0;
     });
     if (known != end) {
-      groups.of_sample.push_back(known->second.number);
+      groups.of_sample.push_back(known->second.second);
     } else {
       groups.of_sample.push_back(groups.count);
-      poses.emplace(at(0), Pose{at, groups.count++});
+      poses.emplace(first, std::pair(s, groups.count++));
     }
   }
   return groups;
@@ -94,15 +144,20 @@ namespace {
 }  // namespace detail
 
 PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> samples) {
-  const std::map<std::string, double> joints = detail::repeatable_joints(problem);
-  if (joints.empty()) return each_its_own(samples.size());
-  PoseGroups groups = detail::groups_of(joints, samples);
+  const Eigen::MatrixXd places = detail::places_of(problem, samples);
+  if (places.rows() == 0) return each_its_own(samples.size());
+  PoseGroups groups = detail::groups_of(places);
   return groups.count < 2 ? each_its_own(samples.size()) : groups;
 }
 
+int distinct_poses(const AnyProblem& problem, std::span<const Sample> samples) {
+  const Eigen::MatrixXd places = detail::places_of(problem, samples);
+  return places.rows() == 0 ? static_cast<int>(samples.size()) : detail::groups_of(places).count;
+}
+
 bool are_one_pose(const AnyProblem& problem, std::span<const Sample> samples) {
-  const std::map<std::string, double> joints = detail::repeatable_joints(problem);
-  return !joints.empty() && samples.size() > 1 && detail::groups_of(joints, samples).count == 1;
+  return samples.size() > 1 && !detail::repeatable_joints(problem).empty() &&
+         distinct_poses(problem, samples) == 1;
 }
 
 std::vector<int> pose_regions(const AnyProblem& problem, std::span<const Sample> samples,

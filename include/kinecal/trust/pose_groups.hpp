@@ -29,9 +29,13 @@ struct PoseGroups {
 [[nodiscard]] PoseGroups each_its_own(std::size_t samples);
 
 /// Samples in which every joint that moves a sensor or target of the problem is where it was in another,
-/// within what robots repeat: 1 mrad, 0.2 mm.  Without such joints each sample is a pose of its own.
+/// within what robots repeat: 1 mrad, 0.2 mm; and so is a target with a pose of its own: 10 mrad, a hundredth of its
+/// distance.  Where nothing moves each sample is a pose of its own.
 /// @param samples  those of the problem, in their order
 [[nodiscard]] PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> samples);
+
+/// Number of such poses, one of several samples among them; of samples, where nothing moves.
+[[nodiscard]] int distinct_poses(const AnyProblem& problem, std::span<const Sample> samples);
 
 /// True if joints move a sensor or target of the problem, and all of several samples are of one pose.
 [[nodiscard]] bool are_one_pose(const AnyProblem& problem, std::span<const Sample> samples);

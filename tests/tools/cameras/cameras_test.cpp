@@ -233,6 +233,25 @@ TEST(CamerasAlone, FewViewsAreNoResult) {
   EXPECT_THAT(judged(9).reasons, Not(testing::Contains(HasSubstr("too few"))));
 }
 
+/// Photographs of a board that nobody moved count as one.
+TEST(CamerasAlone, ViewsThatRepeatAreOneView) {
+  const std::vector<Sample> two = whole_views(2);
+  SeededRandom random(5);
+  std::vector<Sample> samples;
+  for (int i = 0; i < 20; ++i) {
+    Sample& sample = samples.emplace_back(two[static_cast<std::size_t>(i % 2)]);
+    for (Observation& seen : sample.observations) {
+      if (seen.sensor != "left") continue;
+      for (Feature& feature : seen.features) feature.point.x() += 0.2 * random.normal();
+    }
+  }
+  Cameras camera(cameras_config({"left"}, "plumb_bob", "k1 k2"), samples);
+  ASSERT_THAT(camera.diagnostics.errors, IsEmpty());
+  const Judgement judged = calibrate_and_judge(camera.calibration, camera.samples).judgement;
+  EXPECT_EQ(judged.verdict, Grade::do_not_use);
+  EXPECT_THAT(judged.reasons, testing::Contains(HasSubstr("2 different views are too few")));
+}
+
 TEST(CamerasAlone, HeldCoefficientsAreZero) {
   Cameras camera(cameras_config({"left"}, "plumb_bob", "k1 k2 p1 p2"), whole_views(9));
   ASSERT_THAT(camera.diagnostics.errors, IsEmpty());

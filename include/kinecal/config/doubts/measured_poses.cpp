@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -49,7 +50,9 @@ void check_measured_poses(const Config& config, const Robot& robot, std::span<co
                           Diagnostics& diagnostics) {
   constexpr double kDegree = std::numbers::pi / 180.0, kLeast = 1.0 * kDegree;
   for (const Joint* joint : joints_between(config, robot)) {
-    if (joint->type != JointType::floating || samples.size() < 2) continue;
+    const bool is_own = std::any_of(config.per_sample.begin(), config.per_sample.end(),
+                                    [&](const auto& frame) { return frame.name == joint->name; });
+    if (joint->type != JointType::floating || is_own || samples.size() < 2) continue;
     const PoseTurns turns = turns_of(samples, joint->name);
     if (turns.about < kLeast) {
       diagnostics.doubt(
