@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "support/photographs.hpp"
 #include "support/pixel_scene.hpp"
 #include "support/repetitions.hpp"
 
@@ -44,6 +45,29 @@ TEST(LensPattern, FindsK1BesideFreeIntrinsics) {
   test::PixelScene scene{.k1 = -0.1};
   for (const char* name : {"eye_fx", "eye_fy", "eye_cx", "eye_cy"}) scene.free.emplace_back(name);
   EXPECT_TRUE(scene.found());
+}
+
+/// Free parameters absorb most of a lens: the reported pixels are the part that is left in residuals.
+TEST(LensPattern, ReportsPixelsThatResidualsShow) {
+  test::PixelScene scene{.k1 = -0.3};
+  for (const char* name : {"eye_fx", "eye_fy", "eye_cx", "eye_cy"}) scene.free.emplace_back(name);
+  const JudgedResult judged = scene.judged();
+  const std::optional<LensPattern>& found = judged.assessments.back().lens;
+  ASSERT_TRUE(found);
+  EXPECT_LT(std::abs(found->pixels), judged.result.blocks.front().after.max);
+  EXPECT_LT(found->pixels, 0.0);
+}
+
+/// Free coefficients look like k1: what is left is chance.
+TEST(LensPattern, IsNoneOfALensWithFreeCoefficients) {
+  const std::vector<std::string> free = {"fx", "fy", "cx", "cy", "k1", "k2", "k3", "k4"};
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    const test::Photographs photographs(test::fisheye_camera(390.0), "equidistant",
+                                        {.views = 30, .noise = 0.5, .aside = 2.5, .seed = seed});
+    Calibration calibration = photographs.calibration(free);
+    const JudgedResult judged = calibrate_and_judge(calibration, photographs.samples);
+    EXPECT_FALSE(judged.assessments.back().lens) << seed;
+  }
 }
 
 TEST(LensPattern, FindsALensOtherThanTheGivenOne) {

@@ -139,14 +139,32 @@ struct LensSearch {
     const ColumnTest test = test_column(fit, slopes, poses);
     if (test.chance > chance || !(test.change * farther < 0.0)) return {};
     const double f = camera.focal_length(), r = camera.radius();
+    const double per_shift = std::sqrt(fit.loss.dot(slopes.col(0).cwiseAbs2()));
     return LensPattern{.sensor = camera.name(),
-                       .pixels = farther,
+                       .pixels = std::copysign(std::sqrt(fall.squares) / per_shift, farther),
                        .radius = r,
                        .k1 = farther * f * f / (r * r * r),
                        .noise_left = std::sqrt(std::max(0.0, 1.0 - fall.squares / squares.sum())),
                        .taken = camera.taken()};
   }
 };
+
+}  // namespace
+}  // namespace detail
+
+namespace detail {
+namespace {
+
+/// A lens of which a coefficient is free fits as well as its model can.
+[[nodiscard]] bool is_fitted(const MountedSensor& mounted, const FreeSet& free) {
+  const std::vector<int>& own = mounted.parameters();
+  const std::vector<int>& freed = free.parameters();
+  const auto from =
+      own.begin() + std::min(std::ssize(own), static_cast<std::ptrdiff_t>(kIntrinsics));
+  return std::any_of(from, own.end(), [&](int parameter) {
+    return std::find(freed.begin(), freed.end(), parameter) != freed.end();
+  });
+}
 
 }  // namespace
 }  // namespace detail
@@ -161,6 +179,7 @@ std::optional<LensPattern> lens_pattern(const AnyProblem& problem, const FreeSet
   const double each = kChance / static_cast<double>(problem.sensors().size());
   for (const MountedSensor& mounted : problem.sensors()) {
     if (!mounted.sensor().is_camera() || measures_depth(mounted.sensor())) continue;
+    if (detail::is_fitted(mounted, free)) continue;
     const detail::CameraPixels camera(mounted, values, samples);
     if (!(camera.radius() > 0.0)) continue;
     const auto found = search.lens_of(camera, each);

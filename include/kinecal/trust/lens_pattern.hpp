@@ -7,7 +7,9 @@
 // which is the first term of a lens, k1 = a f^2 / R^3, and fit again beside the free parameters.  A wrong focal length or
 // principal point that is held looks alike: the evidence is what is left of a beside these.  Features of one view err
 // together, so its variance is that over poses left out in turn (jackknife).  A pattern is reported if chance is
-// excluded, if a is larger than the noise and half a pixel, and if the noise of the camera falls to 95 %.
+// excluded, if a is larger than the noise and half a pixel, and if the noise of the camera falls to 95 %.  The reported
+// pixels are the part of a that free parameters have not absorbed: it is what residuals show.  A lens of which a
+// coefficient is free fits as well as its model can, and has no pattern.
 // Source: Brown, Decentering Distortion of Lenses, 1966; MacKinnon, White, Some heteroskedasticity-consistent
 // covariance matrix estimators, 1985 (jackknife).
 // SPDX-License-Identifier: Apache-2.0
@@ -33,7 +35,7 @@ enum class TakenLens {
 /// A lens that differs from what it was taken as.
 struct LensPattern {
   std::string sensor;   ///< the camera
-  double pixels = 0.0;  ///< by which features are farther from the center than predicted
+  double pixels = 0.0;  ///< by which residuals are farther from the center at `radius`
   double radius = 0.0;  ///< distance from the center where that is so: the farthest feature, pixels
   double k1 = 0.0;      ///< of the lens, on top of what it was taken as
   double noise_left = 1.0;  ///< ratio of the noise with k1 to that without

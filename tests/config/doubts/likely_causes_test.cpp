@@ -168,6 +168,23 @@ TEST_F(LikelyCauses, FramesOfModelsExchangedAreNamed) {
   EXPECT_THAT(first(), HasSubstr("with the frames of the models 'arm' and 'tracker' exchanged"));
 }
 
+TEST_F(LikelyCauses, WhereNothingIsSolvedOnlyWhatFitsIsNamed) {
+  const auto causes_if_unsolved = [&] {
+    int calls = 0;  // the first is that of the samples as they are
+    return likely_causes(config(), parse_urdf(urdf, "arm.urdf"), samples,
+                         [&](const Calibration& calibration) {
+                           return ++calls == 1 ? CalibrationResult{} : calibrate(calibration);
+                         });
+  };
+  EXPECT_THAT(causes_if_unsolved(), testing::Each(HasSubstr("turned from the axes of a link")))
+      << "all can be solved, but only this fits: the free frame of the tracker absorbs it";
+  for (Sample& sample : samples) position(sample, "roll") *= -1.0;
+  EXPECT_THAT(causes_if_unsolved(),
+              testing::ElementsAre(testing::ContainsRegex(
+                  "^with the positions of 'roll' negated, the samples can be solved, and the mean "
+                  "residual of 'measured' is 0\\.[0-9]+ mm$")));
+}
+
 TEST_F(LikelyCauses, AreSolvedWithTheGivenFunction) {
   int calls = 0;
   (void)likely_causes(config(), parse_urdf(urdf, "arm.urdf"), samples,

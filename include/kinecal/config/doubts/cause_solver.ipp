@@ -14,6 +14,7 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/doubts/likely_causes.hpp"
 #include "kinecal/config/doubts/occurrences.hpp"
+#include "kinecal/trust/judge_noise.ipp"
 
 namespace kinecal::detail {
 
@@ -22,6 +23,7 @@ struct SolvedSamples {
   double cost = 0.0;
   std::vector<BlockStatistics> blocks;
   ParameterTable table;
+  double size = 0.0;  ///< of the robot, metres
 };
 
 /// How to solve hypotheses.
@@ -51,11 +53,34 @@ struct CauseSolver {
   if (!quiet.errors.empty() || calibration.steps.empty()) return std::nullopt;
   const CalibrationResult result = solver.solve(calibration);
   if (result.steps.empty() || !std::isfinite(result.steps.back().final_cost)) return std::nullopt;
-  return SolvedSamples{result.steps.back().final_cost, result.blocks, result.table};
+  return SolvedSamples{result.steps.back().final_cost, result.blocks, result.table,
+                       robot_size(*calibration.steps.back().problem)};
+}
+
+/// True if the typical distances of all error blocks are below those of a result that is refused.
+[[nodiscard]] inline bool fits(const SolvedSamples& solved) {
+  bool any = false;
+  for (const BlockStatistics& block : solved.blocks) {
+    if (block.unit != "m" && block.unit != "px") continue;
+    any = true;
+    if (!(block.after.median < distance_limits(block.unit, solved.size).refuse)) return false;
+  }
+  return any;
 }
 
 [[nodiscard]] inline Calibrator plain_calibrator() {
   return [](const Calibration& calibration) { return calibrate(calibration); };
+}
+
+/// "the samples can be solved, and the mean residual of 'hand_eye' is 0.11 mm", for the first block.
+[[nodiscard]] inline std::string solved_text(const SolvedSamples& after) {
+  std::string text = "the samples can be solved";
+  for (const BlockStatistics& block : after.blocks) {
+    if (block.unit != "m" && block.unit != "px") continue;
+    return text + fmt::format(", and the mean residual of '{}' is {}", block.name,
+                              residual_text(block.after.mean, block.unit));
+  }
+  return text;
 }
 
 /// "the mean residual of 'hand_eye' falls from 93 mm to 0.11 mm", for the block that falls most;

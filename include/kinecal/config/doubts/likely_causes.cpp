@@ -25,6 +25,8 @@ constexpr double kExplains = 0.1;
 /// A scale of points is wrong if correcting it halves the noise: it is one number of a continuum, and noise that
 /// stays is no argument against it.
 constexpr double kExplainsScale = 0.25;
+/// Costs that are alike, and the cost of a cause that explains only a part, in lowest costs.
+constexpr double kAlike = 1.5, kPartly = 100.0;
 
 /// The scale of a model's points that fits best: a board with larger squares than configured.  Fits
 /// parabolas through three costs, over the logarithm of the scale.
@@ -105,11 +107,12 @@ constexpr double kExplainsScale = 0.25;
 
 /// The sentences, lowest cost first; equal costs in the order of the hypotheses.  Drops causes that
 /// only explain a part of a better one, or that change the samples in the same way.
-[[nodiscard]] std::vector<std::string> sentences(std::vector<Cause> found) {
-  constexpr double kAlike = 1.5, kPartly = 100.0;
+/// @param partly  times the lowest cost: what explains only a part
+[[nodiscard]] std::vector<std::string> sentences(std::vector<Cause> found,
+                                                 double partly = kPartly) {
   double best = HUGE_VAL;
   for (const Cause& cause : found) best = std::min(best, cause.cost);
-  std::erase_if(found, [&](const Cause& cause) { return cause.cost > kPartly * best; });
+  std::erase_if(found, [&](const Cause& cause) { return cause.cost > partly * best; });
   std::set<double> costs;
   std::erase_if(found, [&](const Cause& cause) { return !costs.insert(cause.cost).second; });
   for (Cause& cause : found) cause.cost = std::max(cause.cost, kAlike * best);
@@ -137,17 +140,21 @@ std::vector<std::string> likely_causes(const Config& config, const Robot& robot,
     if (hypothesis.correct_config) hypothesis.correct_config(changed_config);
     const auto then = detail::solve_samples(solver, changed_config, changed);
     if (!then) continue;
+    if (!now) {
+      if (!detail::fits(*then)) continue;  // it can be solved, but is wrong, too
+      found.push_back({then->cost, hypothesis.undone + ", " + detail::solved_text(*then)});
+      continue;
+    }
     const double cost = then->cost / (hypothesis.shrinks * hypothesis.shrinks);
-    if (now && cost >= detail::kExplains * now->cost) continue;
-    found.push_back({cost, hypothesis.undone + ", " +
-                               (now ? detail::fall_of(*now, *then) : "the samples can be solved")});
+    if (cost >= detail::kExplains * now->cost) continue;
+    found.push_back({cost, hypothesis.undone + ", " + detail::fall_of(*now, *then)});
   }
   if (now) {
     for (detail::Cause& cause : detail::scale_causes(solver, some, *now, detail::kExplainsScale)) {
       found.push_back(std::move(cause));
     }
   }
-  return detail::sentences(std::move(found));
+  return detail::sentences(std::move(found), now ? detail::kPartly : detail::kAlike);
 }
 
 std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,

@@ -23,7 +23,8 @@ using Calibrator = std::function<CalibrationResult(const Calibration&)>;
 
 /// Sentences about mistakes that explain a bad fit, best first: "with the positions of 'elbow' and
 /// 'wrist' exchanged, the mean residual of 'hand_eye' falls from 93 mm to 0.11 mm".  Empty if none
-/// brings the cost below a tenth.
+/// brings the cost below a tenth.  Where the samples as they are cannot be solved, a mistake counts only if
+/// without it they fit about as well as the best of them, and well enough for a result that may be used.
 ///
 /// With many samples, only every n-th is used, also for the solve to compare with.
 /// @param samples  with positions in the convention of the calibration that fits badly
