@@ -116,6 +116,23 @@ TEST_F(JointPositions, ThatATurnExplainsAreNoErrorAboutTheSign) {
   EXPECT_THAT(diagnostics.refutable, IsEmpty());
 }
 
+TEST_F(JointPositions, OfAZeroThatTheConfigurationHasAreRight) {
+  for (Sample& sample : samples) position(sample, "flex") += 0.5 * std::numbers::pi;
+  config_text += "initial_values: {flex: -1.5707963}\n";
+  expect_nothing();
+}
+
+TEST_F(JointPositions, UnderExchangedNamesAreADoubtThatAFitRefutes) {
+  for (Sample& sample : samples) position(sample, "roll") *= 0.3;  // inside those of lift
+  for (std::size_t n = 0; n < 3; ++n) {  // inside those of roll, and no turn brings all inside
+    position(samples[n], "lift") = -2.5;
+    position(samples[n + 3], "lift") = 2.5;
+  }
+  const Diagnostics diagnostics = found();
+  EXPECT_THAT(diagnostics.doubts, ElementsAre(HasSubstr("if these two names are exchanged")));
+  EXPECT_EQ(diagnostics.refutable, diagnostics.doubts);
+}
+
 TEST_F(JointPositions, SlightlyBeyondTheLimitsAreAWarningThatStandsOnce) {
   position(samples[3], "pan") = 2.95;
   position(samples[7], "pan") = -2.97;
