@@ -134,6 +134,7 @@ class LogRun {
     ProcedureOptions procedure;
     procedure.solving.threads = options_.threads;
     procedure.doubts = first_.diagnostics.doubts;
+    procedure.refutable = first_.diagnostics.refutable;
     if (content_.doubts > 0) {
       procedure.doubts.push_back(
           fmt::format("{} about other files, printed above",

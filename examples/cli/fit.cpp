@@ -33,6 +33,7 @@ Fit fit(const Input& input, Calibration calibration, const CalibrateOptions& opt
                              .keep_outliers = options.keep_outliers,
                              .exclude = {},
                              .doubts = input.diagnostics.doubts,
+                             .refutable = input.diagnostics.refutable,
                              .progress = progress};
   for (const int number : options.exclude) {
     if (number < 1 || number > std::ssize(input.samples)) {

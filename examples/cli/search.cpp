@@ -28,6 +28,7 @@ SearchedFit search_and_fit(Input& input, const CalibrateOptions& options, bool g
     if (all.is_empty()) return;
     input.diagnostics = {};
     input.diagnostics.doubts = before.doubts;
+    input.diagnostics.refutable = before.refutable;
     assemble_input(input, options);
     input.diagnostics.throw_if_errors();
     all.fit = fit(input, std::move(input.calibration), options, progress, solving);

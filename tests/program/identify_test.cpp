@@ -50,6 +50,24 @@ class IdentifyProgram : public test::ProgramTest {
 
 const std::string kFiles = "--urdf ur5e.urdf --samples samples.yaml ";
 
+TEST_F(IdentifyProgram, AQuarterTurnIsInTheReportOfACalibrationThatHoldsIt) {
+  std::string table = read("samples.yaml");
+  const std::regex wrist(R"((position: \[[^,\]]*,[^,\]]*,[^,\]]*,[^,\]]*, )([^,\]]*))");
+  std::string turned;
+  std::smatch match;
+  while (std::regex_search(table, match, wrist)) {  // the fifth joint
+    turned += match.prefix().str() + match[1].str() +
+              std::to_string(std::stod(match[2].str()) - 1.570796326794897);
+    table = match.suffix();
+  }
+  write("samples.yaml", turned + table);
+  ASSERT_EQ(kinecal("identify " + kFiles).code, 0);
+  const Outcome done =
+      kinecal("calibrate " + kFiles + "--config identified.yaml --output out --hold wrist_2_joint");
+  const std::regex held("wrist_2_joint +9[0-9.]+ +9[0-9.]+ +- +deg +held");
+  EXPECT_TRUE(std::regex_search(done.out, held)) << done.out << done.err;
+}
+
 TEST_F(IdentifyProgram, WritesTheSearchIntoItsReports) {
   const Outcome found = kinecal("identify " + kFiles + "--report r.html --report r.json");
   ASSERT_EQ(found.code, 0) << found.err;

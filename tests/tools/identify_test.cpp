@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <numbers>
 #include <set>
 
 #include "kinecal/config/config_to_yaml.hpp"
@@ -181,6 +183,35 @@ TEST(Identify, FindsAZeroThatIsAQuarterTurnOff) {
   EXPECT_NEAR(turn, 1.5708, 1e-4);
   EXPECT_THAT(found.names(), ElementsAre("wrist_2_joint")) << "by 0.02 rad more";
   EXPECT_LT(arm.error(found.config), 2e-4);
+}
+
+/// The turns that a search finds, by joint, where positions of a camera in the hand are recorded with other zeros.
+std::map<std::string, double> turns_found(const std::map<std::string, double>& zeros) {
+  SpoiledRobot arm(4, test::robot_kinds()[4]);
+  arm.spoil(0);
+  std::vector<Sample> samples = arm.samples();
+  for (Sample& sample : samples) {
+    for (std::size_t j = 0; j < sample.joint_names.size(); ++j) {
+      const auto zero = zeros.find(sample.joint_names[j]);
+      if (zero != zeros.end()) sample.joint_positions[j] -= zero->second;
+    }
+  }
+  const RobotSearch search = search_robot(arm.config(), arm.robot(), samples);
+  EXPECT_TRUE(search.found.result.converged);
+  std::map<std::string, double> turns;
+  for (const auto& [k, by] : search.found.turned) {
+    turns[search.task.candidates[static_cast<std::size_t>(k)].name] = by;
+  }
+  return turns;
+}
+
+TEST(Identify, FindsQuarterTurnsWithWhichACameraSeesNothing) {
+  constexpr double kQuarter = 0.5 * std::numbers::pi;
+  const std::map<std::string, double> zeros = {{"panda_joint6", kQuarter}};
+  EXPECT_EQ(turns_found(zeros), zeros);
+  const std::map<std::string, double> two = {{"panda_joint4", -kQuarter},
+                                             {"panda_joint6", kQuarter}};
+  EXPECT_EQ(turns_found(two), two) << "both are outside their limits";
 }
 
 TEST(Identify, NamesWhatNoSampleTellsApart) {

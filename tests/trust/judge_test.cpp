@@ -61,6 +61,19 @@ TEST(Judge, NamesTheWorstOfManyChanges) {
   EXPECT_EQ(judgement.reasons.size(), 1u);
 }
 
+/// Joints under wrong names do not fit to the noise of the sensor.
+TEST(Judge, DropsDoubtsThatTheFitRefutes) {
+  Judged judged;
+  const std::vector<std::string> doubts = {"names are exchanged", "it is in millimetres"};
+  const auto of = [&] {
+    return judge(judged.scene.calibration, judged.scene.result, judged.assessments, doubts,
+                 {doubts[0]});
+  };
+  EXPECT_THAT(of().reasons, testing::ElementsAre(doubts[1]));
+  judged.noise().sigma = judged.noise().robust = 3.1 * judged.noise().given;
+  EXPECT_THAT(of().reasons, testing::IsSupersetOf(doubts));
+}
+
 TEST(Judge, RefusesWhatDidNotConverge) {
   Judged judged;
   judged.scene.result.converged = false;

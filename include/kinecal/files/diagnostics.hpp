@@ -27,11 +27,12 @@ struct SourceLocation {
 
 /// Findings of readers: "file:line: message".  With errors, the result is incomplete.
 struct Diagnostics {
-  std::vector<std::string> errors;    ///< make the input unusable
-  std::vector<std::string> warnings;  ///< skipped or assumed input; the result is not affected
-  std::vector<std::string> doubts;    ///< looks wrong but could be right: check the result before
-                                      ///< you use it
-  std::vector<std::string> notes;     ///< findings that need no action
+  std::vector<std::string> errors;     ///< make the input unusable
+  std::vector<std::string> warnings;   ///< skipped or assumed input; the result is not affected
+  std::vector<std::string> doubts;     ///< looks wrong but could be right: check the result before
+                                       ///< you use it
+  std::vector<std::string> refutable;  ///< those of the doubts that a fit to the noise refutes
+  std::vector<std::string> notes;      ///< findings that need no action
 
   /// Adds an error.
   void error(const SourceLocation& place, const std::string& message) {
@@ -45,6 +46,12 @@ struct Diagnostics {
   /// Adds a doubt.
   void doubt(const SourceLocation& place, const std::string& message) {
     doubts.push_back(place.str() + ": " + message);
+  }
+
+  /// Adds a doubt that a fit to the noise refutes.
+  void refutable_doubt(const SourceLocation& place, const std::string& message) {
+    doubt(place, message);
+    refutable.push_back(doubts.back());
   }
 
   /// Adds a note.

@@ -126,12 +126,30 @@ std::string note_on(const Parameter& parameter, double deviation) {
   return text.empty() ? text : "Worst samples\n" + text;
 }
 
+/// Parameters of joints and sensors that no step frees, and whose value is not zero.
+[[nodiscard]] inline std::vector<int> held_values(const Robot& robot,
+                                                  const Calibration& calibration,
+                                                  const CalibrationResult& result) {
+  std::vector<int> held;
+  if (calibration.steps.empty()) return held;
+  const AnyProblem& problem = *calibration.steps.back().problem;
+  for (int p = 0; p < std::min(result.table.size(), problem.table().size()); ++p) {
+    const std::string& owner = problem.owners()[static_cast<std::size_t>(p)];
+    const bool is_virtual = problem.frames().contains(owner) && !robot.has_joint(owner);
+    const bool is_free =
+        std::find(result.calibrated.begin(), result.calibrated.end(), p) != result.calibrated.end();
+    if (result.table[p].value != 0.0 && !is_virtual && !is_free) held.push_back(p);
+  }
+  return held;
+}
+
 }  // namespace detail
 
 Findings findings_of(const Robot& robot, const Calibration& calibration, JudgedResult judged,
                      std::span<const Sample> samples) {
   Findings findings{std::move(judged)};
   findings.robot = robot.name();
+  findings.held = detail::held_values(robot, calibration, findings.result);
   findings.poses = recorded_poses(calibration, samples);
   return findings;
 }

@@ -25,6 +25,7 @@ struct Findings : JudgedResult {
   std::vector<std::string> helps = {};  ///< what would lower the error on held-out poses: sentences
   double helps_leave = 1.0;             ///< what is left of that error then
   std::vector<std::string> speeds = {};  ///< how fast is still good, where samples moved: sentences
+  std::vector<int> held = {};  ///< parameters of joints and sensors held at a value other than zero
   ReportedSearch search = {};  ///< that chose the free parameters; without steps: there was none
   RecordedPoses poses = {};    ///< of the samples that were used
   ProgramCall call = {};       ///< how the program was called

@@ -48,6 +48,17 @@ namespace kinecal::detail {
     row.push_back(deviation ? note_on(parameter, *deviation) : "at its bound");
     table.add(std::move(row));
   }
+  for (const int i : unknown ? std::vector<int>() : findings.held) {
+    const Parameter& parameter = findings.result.table[i];
+    const auto [value, unit] = for_people(parameter.value, parameter.unit);
+    TextTable::Row row = {parameter.name, value, value, "-", unit};
+    if (figures == Figures::raw) {
+      row.insert(row.end(), 2, fmt::format("{:.8g}", parameter.value));
+    }
+    row.push_back("held");
+    table.add(std::move(row));
+    ++rows;
+  }
   return rows == 0 ? "" : table.str();
 }
 

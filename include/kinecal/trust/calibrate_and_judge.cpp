@@ -75,7 +75,7 @@ class Procedure {
     assessing.meter = options_.solving.meter;
     assessing.folds = options_.folds > 0 ? options_.folds : static_cast<int>(used_.size());
     return judge_result(calibration_, calibrate(calibration_, options_.progress, options_.solving),
-                        used_, assessing, options_.doubts);
+                        used_, assessing, options_.doubts, options_.refutable);
   }
 
   /// Fits, and fits again with the noise of each block that has no sigma in its place, until it stays.
@@ -132,7 +132,8 @@ JudgedResult calibrate_and_judge(Calibration& calibration, std::span<const Sampl
 
 JudgedResult judge_result(const Calibration& calibration, CalibrationResult result,
                           std::span<const Sample> samples, const AssessOptions& options,
-                          const std::vector<std::string>& doubts) {
+                          const std::vector<std::string>& doubts,
+                          const std::vector<std::string>& refutable) {
   JudgedResult judged;
   judged.result = std::move(result);
   for (const Sample& sample : samples) judged.sources.push_back(sample.source);
@@ -145,7 +146,7 @@ JudgedResult judge_result(const Calibration& calibration, CalibrationResult resu
     } catch (const std::domain_error&) {  // it ended with a point behind a camera: not converged
     }
   }
-  judged.judgement = judge(calibration, judged.result, judged.assessments, doubts);
+  judged.judgement = judge(calibration, judged.result, judged.assessments, doubts, refutable);
   return judged;
 }
 

@@ -57,7 +57,8 @@ struct ProcedureOptions {
   bool keep_outliers = false;            ///< no sample is left out
   std::map<int, std::string> exclude;    ///< samples to leave out, from 0, and why
   std::vector<std::string> doubts = {};  ///< about the input, as sentences: reasons of the verdict
-  Progress progress = {};                ///< called in each iteration
+  std::vector<std::string> refutable = {};  ///< those of the doubts that a fit to the noise refutes
+  Progress progress = {};                   ///< called in each iteration
 };
 
 /// Calibrates and judges.
@@ -71,11 +72,13 @@ struct ProcedureOptions {
 
 /// Assesses and judges a calibration that has run.
 /// @param samples  those of the calibration, in their order; their numbers are 1, 2, 3 ...
-/// @param doubts   about the input, as sentences
+/// @param doubts     about the input, as sentences
+/// @param refutable  those of the doubts that do not count if the result fits to the noise
 [[nodiscard]] JudgedResult judge_result(const Calibration& calibration, CalibrationResult result,
                                         std::span<const Sample> samples,
                                         const AssessOptions& options = {},
-                                        const std::vector<std::string>& doubts = {});
+                                        const std::vector<std::string>& doubts = {},
+                                        const std::vector<std::string>& refutable = {});
 
 /// The samples that a result uses.
 /// @param all  those that were given to calibrate_and_judge()

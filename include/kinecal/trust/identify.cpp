@@ -16,36 +16,73 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// Zeros that are a quarter or half turn off, as of servos that were screwed on so: no linearization finds them.
-void find_turns(Identification& search, Identified& found) {
+/// Begins with zeros that are turned, or back.
+void turn(Identification& search, const Turns& turns, double factor) {
+  for (const auto& [k, by] : turns) {
+    search.begin_with(search.candidates()[static_cast<std::size_t>(k)].columns.front(),
+                      factor * by);
+  }
+}
+
+/// Quarter and half turns of each zero alone.
+[[nodiscard]] std::vector<Turns> single_turns(const Identification& search) {
+  std::vector<Turns> all;
+  for (int k = 0; k < static_cast<int>(search.candidates().size()); ++k) {
+    const SearchCandidate& of = search.candidates()[static_cast<std::size_t>(k)];
+    if (of.rank > 0 || of.columns.size() != 1) continue;
+    if (search.parameter(of.columns.front()).unit != "rad") continue;
+    for (const double part : {0.5, -0.5, 1.0}) all.push_back({{k, part * std::numbers::pi}});
+  }
+  return all;
+}
+
+/// Likely turns, all together and each alone; not those of joints that no residual depends on.
+[[nodiscard]] std::vector<Turns> likely_turns(const Identification& search, const Turns& likely) {
+  Turns together;
+  for (const auto& turn : likely) {
+    const SearchCandidate& of = search.candidates()[static_cast<std::size_t>(turn.first)];
+    if (of.columns.size() == 1) together.push_back(turn);
+  }
+  std::vector<Turns> all;
+  if (together.size() > 1) all.push_back(together);
+  for (const auto& turn : together) all.push_back({turn});
+  return all;
+}
+
+/// The turns after which the noise is least; empty if it is not below `most` after any.
+[[nodiscard]] Turns best_turns(Identification& search, const std::vector<Turns>& tried,
+                               double most) {
+  Turns best;
+  for (const Turns& turns : tried) {
+    turn(search, turns, 1.0);
+    if (search.solve({}).converged && search.noise() < most) {
+      best = turns;
+      most = search.noise();
+    }
+    turn(search, turns, -1.0);
+  }
+  return best;
+}
+
+/// Solves with zeros that are a quarter or half turn off, as of servos that were screwed on so: no linearization
+/// finds them, and with them a camera may see nothing at the start.
+void find_turns(Identification& search, const Turns& likely, Identified& found) {
   constexpr double kMetres = 0.01, kPixels = 30.0;  // residuals of less are no such error
   constexpr double kThird = 1.0 / 3.0;
   constexpr int kMost = 3;
-  for (int n = 0; n < kMost && search.noise() > (search.noise_unit() == "px" ? kPixels : kMetres);
-       ++n) {
-    std::pair<int, double> best{-1, 0.0};
-    double least = kThird * search.noise();
-    for (int k = 0; k < static_cast<int>(search.candidates().size()); ++k) {
-      const std::vector<int>& own = search.candidates()[static_cast<std::size_t>(k)].columns;
-      if (search.candidates()[static_cast<std::size_t>(k)].rank > 0 || own.size() != 1) continue;
-      if (search.parameter(own.front()).unit != "rad") continue;
-      for (const double turn : {0.5, -0.5, 1.0}) {
-        const double by = turn * std::numbers::pi;
-        search.begin_with(own.front(), by);
-        if (search.solve({}).converged && search.noise() < least) {
-          best = {k, by};
-          least = search.noise();
-        }
-        search.begin_with(own.front(), -by);
-      }
-    }
-    if (best.first >= 0) {
-      search.begin_with(search.candidates()[static_cast<std::size_t>(best.first)].columns.front(),
-                        best.second);
-      found.turned.push_back(best);
-    }
+  const double enough = search.noise_unit() == "px" ? kPixels : kMetres;
+  for (int n = 0; n < kMost; ++n) {
+    const bool starts = found.result.converged;
+    if (starts && search.noise() <= enough) return;
+    const double most = starts ? kThird * search.noise() : enough;
+    Turns best;
+    if (n == 0) best = best_turns(search, likely_turns(search, likely), most);
+    if (best.empty()) best = best_turns(search, single_turns(search), most);
+    turn(search, best, 1.0);
+    found.turned.insert(found.turned.end(), best.begin(), best.end());
+    if (best.empty()) search.begin_again();
     found.result = search.solve({});
-    if (best.first < 0) return;
+    if (best.empty()) return;
   }
 }
 
@@ -57,12 +94,12 @@ void find_turns(Identification& search, Identified& found) {
           one * step.fit.deviation, step.fit.columns,      step.inseparable};
 }
 
-Identified run(Identification& search) {
+Identified run(Identification& search, const Turns& likely) {
   constexpr int kLinearizations = 12;
   Identified found;
   found.unit = search.unit();
   found.result = search.solve({});
-  if (found.result.converged) find_turns(search, found);
+  find_turns(search, likely, found);
   std::set<std::set<int>> seen;
   for (int round = 0; round < kLinearizations && found.result.converged; ++round) {
     const ParameterSearch linear = search.linearized();
@@ -149,11 +186,11 @@ Identified most_helpful(Calibration& calibration, std::span<const Sample> sample
 }
 
 Identified identify(Calibration& calibration, std::span<const Sample> samples,
-                    const std::vector<int>& base,
-                    const std::vector<IdentifyCandidate>& candidates) {
+                    const std::vector<int>& base, const std::vector<IdentifyCandidate>& candidates,
+                    const Turns& likely) {
   detail::check_search(calibration, samples);
   detail::Identification search(calibration, samples, base, candidates);
-  return detail::run(search);
+  return detail::run(search, likely);
 }
 
 }  // namespace kinecal

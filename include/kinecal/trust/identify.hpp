@@ -23,6 +23,9 @@ struct IdentifyCandidate {
   int rank = 0;                 ///< of candidates that explain the same, the lowest is taken
 };
 
+/// Turns of zeros: candidates, and radians.
+using Turns = std::vector<std::pair<int, double>>;
+
 /// What one parameter buys, in the order of what they explain.  Errors are of the error block, in its unit; of several,
 /// in units of their noise.
 struct IdentifyStep {
@@ -42,8 +45,7 @@ struct IdentifyStep {
 /// What was found.
 struct Identified {
   std::vector<int> chosen;  ///< candidates
-  /// Zeros that are a quarter or half turn off: candidates, and radians.  Their values begin there.
-  std::vector<std::pair<int, double>> turned;
+  Turns turned;             ///< zeros that are a quarter or half turn off: their values begin there
   std::vector<IdentifyStep> steps;  ///< the first one is the base alone
   /// What the next candidates would have bought, if they were freed after these: they were not, because noise explains it.
   std::vector<IdentifyStep> beyond;
@@ -64,9 +66,11 @@ struct Identified {
 /// @param calibration  of one step, whose problem has all parameters; its free set, sigmas and values change
 /// @param samples      those of the problem, in their order
 /// @param base         table indices that are always free
+/// @param likely       turns of zeros that something suggests: tried first if the samples do not fit at the start
 /// @throws std::invalid_argument  if the calibration has not one step, or samples of too few poses
 [[nodiscard]] Identified identify(Calibration& calibration, std::span<const Sample> samples,
                                   const std::vector<int>& base,
-                                  const std::vector<IdentifyCandidate>& candidates);
+                                  const std::vector<IdentifyCandidate>& candidates,
+                                  const Turns& likely = {});
 
 }  // namespace kinecal

@@ -149,8 +149,8 @@ bool fits_badly(const Assessment& step) {
 }
 
 Judgement judge(const Calibration& calibration, const CalibrationResult& result,
-                const std::vector<Assessment>& assessments,
-                const std::vector<std::string>& doubts) {
+                const std::vector<Assessment>& assessments, const std::vector<std::string>& doubts,
+                const std::vector<std::string>& refutable) {
   Judgement judgement;
   if (!result.converged) judgement.add(Grade::do_not_use, result.termination);
   for (std::size_t s = 0; s < assessments.size(); ++s) {
@@ -181,7 +181,13 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
     if (last) detail::judge_priors(assessments[s], result.table, judgement);
     if (last) detail::judge_pose(assessments[s], judgement);
   }
-  for (const std::string& doubt : doubts) judgement.add(Grade::use_with_care, doubt);
+  const bool refutes =
+      result.converged && !assessments.empty() && detail::fits_to_noise(assessments.back());
+  for (const std::string& doubt : doubts) {
+    if (refutes && std::find(refutable.begin(), refutable.end(), doubt) != refutable.end())
+      continue;
+    judgement.add(Grade::use_with_care, doubt);
+  }
   return judgement;
 }
 

@@ -75,9 +75,11 @@ struct Judgement {
 /// Judges a calibration.
 /// @param assessments  of its steps: see assess()
 /// @param doubts       about the input, in sentences
+/// @param refutable    those of the doubts that do not count if the last step fits to the noise
 [[nodiscard]] Judgement judge(const Calibration& calibration, const CalibrationResult& result,
                               const std::vector<Assessment>& assessments,
-                              const std::vector<std::string>& doubts = {});
+                              const std::vector<std::string>& doubts = {},
+                              const std::vector<std::string>& refutable = {});
 
 /// Judges samples that were left out because they do not fit the others (ruined.hpp).
 /// @param samples  their number, including those left out

@@ -78,4 +78,21 @@ inline void judge_noise(const Assessment& step, Judgement& judgement) {
   }
 }
 
+/// True if the residuals of a step speak against no sigma, and are as small as those of good sensors:
+/// joints under wrong names or with wrong signs do not fit so.
+[[nodiscard]] inline bool fits_to_noise(const Assessment& step) {
+  constexpr double kOfLimit = 0.25;
+  bool some = false;
+  for (const BlockNoise& noise : step.noise) {
+    const bool is_distance = noise.unit == "m" || noise.unit == "px";
+    if (noise.features == 0 || noise.freedom <= 0.0 || !is_distance) continue;
+    const double distance = std::min(noise.sigma, noise.robust) * std::sqrt(noise.components);
+    if (distance > kOfLimit * distance_limits(noise.unit, step.size).care) return false;
+    some = true;
+  }
+  Judgement of_noise;
+  judge_noise(step, of_noise);
+  return some && of_noise.verdict == Grade::good;
+}
+
 }  // namespace kinecal::detail

@@ -26,8 +26,8 @@ class ShardProcedure {
 
   [[nodiscard]] JudgedResult run() {
     JudgedResult judged = noise_.settle(calibration_.first, [&] { return fit(); });
-    judged.judgement =
-        judge(calibration_.first, judged.result, judged.assessments, options_.doubts);
+    judged.judgement = judge(calibration_.first, judged.result, judged.assessments, options_.doubts,
+                             options_.refutable);
     judge_misfits(judged.judgement);
     judge_far(judged.judgement);
     judge_copies(judged.judgement);

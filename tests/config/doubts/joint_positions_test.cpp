@@ -74,6 +74,65 @@ TEST_F(JointPositions, HalfATurnBeyondTheLimitsIsAnotherZeroAndNotDegrees) {
   EXPECT_THAT(diagnostics.doubts, ElementsAre(HasSubstr("are inside: is its zero another one")));
 }
 
+TEST_F(JointPositions, AreNotInAnotherOrderIfThatOrderIsTheirOwn) {
+  const auto rename = [&](const std::string& from, const std::string& to) {
+    while (urdf.find('"' + from + '"') != std::string::npos) {
+      replace(urdf, '"' + from + '"', '"' + to + '"');
+    }
+    for (Sample& sample : samples) {
+      for (std::string& name : sample.joint_names) name = name == from ? to : name;
+    }
+  };
+  rename("pan", "a_pan");  // the order of the alphabet is that of the chain
+  rename("roll", "m_roll");
+  rename("flex", "z_flex");
+  rename("lift", "b_lift");
+  replace(config_text, "- lift", "- b_lift");
+  replace(config_text, "- roll", "- m_roll");
+  replace(config_text, "- flex", "- z_flex");
+  for (const int n : {3, 7}) position(samples[n], "b_lift") = 1.9;  // less than 2 % of all
+  const Diagnostics diagnostics = found();
+  EXPECT_THAT(diagnostics.errors, IsEmpty());
+  EXPECT_THAT(diagnostics.doubts, ElementsAre(HasSubstr("'b_lift' is outside its limits")));
+}
+
+TEST_F(JointPositions, WithAnotherZeroNameTheSmallestTurnThatBringsAllInside) {
+  replace(urdf, R"(lower="-1.2" upper="1.4")", R"(lower="-0.01" upper="3.7")");
+  double step = 0.0;
+  for (Sample& sample : samples) {  // from -0.42 to 0.91
+    position(sample, "lift") = -0.42 + (step += 1.33 / static_cast<double>(samples.size()));
+  }
+  position(samples.front(), "lift") = -0.42;
+  const Diagnostics diagnostics = found();
+  EXPECT_THAT(diagnostics.errors, IsEmpty());
+  EXPECT_THAT(diagnostics.doubts, ElementsAre(HasSubstr("with +1.57 rad they are inside")));
+}
+
+TEST_F(JointPositions, ThatATurnExplainsAreNoErrorAboutTheSign) {
+  for (Sample& sample : samples) position(sample, "flex") += 0.5 * std::numbers::pi;
+  const Diagnostics diagnostics = found();
+  EXPECT_THAT(diagnostics.errors, IsEmpty());
+  EXPECT_THAT(diagnostics.doubts, ElementsAre(HasSubstr("is its zero")));
+  EXPECT_THAT(diagnostics.refutable, IsEmpty());
+}
+
+TEST_F(JointPositions, OfAZeroThatTheConfigurationHasAreRight) {
+  for (Sample& sample : samples) position(sample, "flex") += 0.5 * std::numbers::pi;
+  config_text += "initial_values: {flex: -1.5707963}\n";
+  expect_nothing();
+}
+
+TEST_F(JointPositions, UnderExchangedNamesAreADoubtThatAFitRefutes) {
+  for (Sample& sample : samples) position(sample, "roll") *= 0.3;  // inside those of lift
+  for (std::size_t n = 0; n < 3; ++n) {  // inside those of roll, and no turn brings all inside
+    position(samples[n], "lift") = -2.5;
+    position(samples[n + 3], "lift") = 2.5;
+  }
+  const Diagnostics diagnostics = found();
+  EXPECT_THAT(diagnostics.doubts, ElementsAre(HasSubstr("if these two names are exchanged")));
+  EXPECT_EQ(diagnostics.refutable, diagnostics.doubts);
+}
+
 TEST_F(JointPositions, SlightlyBeyondTheLimitsAreAWarningThatStandsOnce) {
   position(samples[3], "pan") = 2.95;
   position(samples[7], "pan") = -2.97;

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -25,11 +23,35 @@ namespace kinecal::detail {
   return 20 * count >= all && (count >= 2 || all == 1);
 }
 
+/// True if so few positions are outside after a correction that it explains those outside before.
+[[nodiscard]] inline bool explains(std::size_t before, std::size_t after, std::size_t all) {
+  return 50 * after <= all && 5 * after <= before;
+}
+
 /// Number of positions of one joint that are outside the limits of another.
 [[nodiscard]] inline std::size_t count_outside(const UsedJoint& limits, const UsedJoint& of) {
   return static_cast<std::size_t>(
       std::count_if(of.positions.begin(), of.positions.end(),
                     [&](double position) { return is_outside(limits, position); }));
+}
+
+/// True if the other sign explains positions outside the limits.
+[[nodiscard]] inline bool fits_negated(const UsedJoint& joint) {
+  UsedJoint negated = joint;
+  for (double& position : negated.positions) position = -position;
+  return explains(count_outside(joint, joint), count_outside(joint, negated),
+                  joint.positions.size());
+}
+
+/// True if one joint is outside its limits, and another zero of it explains that.
+[[nodiscard]] inline bool is_one_turned(std::span<const UsedJoint> joints) {
+  int outside = 0, turned = 0;
+  for (const UsedJoint& joint : joints) {
+    if (!are_many(count_outside(joint, joint), joint.positions.size())) continue;
+    ++outside;
+    turned += turn_into_limits(joint) ? 1 : 0;
+  }
+  return outside == 1 && turned == 1;
 }
 
 /// Two joints whose positions fit if their names are exchanged.
@@ -58,7 +80,7 @@ struct ExchangedPair {
       const std::size_t all = first.positions.size() + second.positions.size();
       const std::size_t after = count_outside(first, second) + count_outside(second, first);
       const std::size_t of_others = outside - of_a - of_b;
-      if (!are_many(of_a + of_b, all / 2) || 50 * (after + of_others) > all) continue;
+      if (!are_many(of_a + of_b, all / 2) || !explains(outside, after + of_others, all)) continue;
       pairs.push_back({a, b, of_a + of_b, of_a > 0 && of_b > 0});
     }
   }
@@ -96,57 +118,9 @@ inline std::vector<std::size_t> report_exchanged(std::span<const UsedJoint> join
   if (best.both_outside || best.outside > half) {
     diagnostics.error(place, text);
   } else {
-    diagnostics.doubt(place, text);
+    diagnostics.refutable_doubt(place, text);
   }
   return {best.a, best.b};
-}
-
-/// Another order of the joints: joint j gets the positions named after joint order[j].
-struct JointOrder {
-  std::vector<std::size_t> order;
-  const char* how;
-};
-
-/// Orders that drivers and people commonly produce.
-[[nodiscard]] inline std::vector<JointOrder> joint_orders(std::span<const UsedJoint> joints) {
-  std::vector<std::size_t> sorted(joints.size());
-  std::iota(sorted.begin(), sorted.end(), 0);
-  std::vector<std::size_t> reversed(sorted.rbegin(), sorted.rend()), inverse = sorted;
-  std::sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
-    return joints[a].joint.name < joints[b].joint.name;
-  });
-  for (std::size_t i = 0; i < sorted.size(); ++i) inverse[sorted[i]] = i;
-  return {{sorted, "if they are in the order of the chain and the names in that of the alphabet"},
-          {inverse, "if they are in the order of the alphabet and the names in that of the chain"},
-          {reversed, "if they are in reverse order"}};
-}
-
-/// Error: names and positions are in different orders.
-/// @returns  true if it was reported
-inline bool report_order(std::span<const UsedJoint> joints, std::span<const Sample> samples,
-                         Diagnostics& diagnostics) {
-  std::size_t all = 0;
-  for (const UsedJoint& joint : joints) all += joint.positions.size();
-  const auto first = std::find_if(joints.begin(), joints.end(), [](const UsedJoint& joint) {
-    return count_outside(joint, joint) > 0;
-  });
-  if (first == joints.end() || !are_many(count_all_outside(joints), samples.size())) return false;
-  for (const auto& [order, how] : joint_orders(joints)) {
-    std::size_t after = 0;
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-      after += count_outside(joints[j], joints[order[j]]);
-    }
-    if (50 * after > all) continue;
-    std::size_t at = 0;
-    while (!is_outside(*first, first->positions[at])) ++at;
-    diagnostics.error(
-        place_of(samples, first->samples[at]),
-        fmt::format("position of '{}' is {:.4g}; its limits are {}; all positions are within their "
-                    "limits {}; compare the order of names and positions with the driver",
-                    first->joint.name, first->positions[at], first->limits_text(), how));
-    return true;
-  }
-  return false;
 }
 
 /// Error, or doubt if only few positions show it: the positions of one joint have the wrong sign.
@@ -158,9 +132,7 @@ inline std::vector<std::size_t> report_negated(std::span<const UsedJoint> joints
     const UsedJoint& joint = joints[j];
     const std::size_t all = joint.positions.size(), outside = count_outside(joint, joint);
     if (!are_many(outside, all) || 50 * (count_all_outside(joints) - outside) > all) continue;
-    UsedJoint negated = joint;
-    for (double& position : negated.positions) position = -position;
-    if (50 * count_outside(joint, negated) > all) continue;
+    if (!fits_negated(joint)) continue;
     std::size_t at = 0;
     while (!is_outside(joint, joint.positions[at])) ++at;
     const SourceLocation place = place_of(samples, joint.samples[at]);
@@ -171,7 +143,7 @@ inline std::vector<std::size_t> report_negated(std::span<const UsedJoint> joints
     if (2 * outside > all) {
       diagnostics.error(place, text);
     } else {
-      diagnostics.doubt(place, text);
+      diagnostics.refutable_doubt(place, text);
     }
     return {j};
   }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <iterator>
 #include <numbers>
 #include <optional>
 
@@ -27,15 +26,20 @@ namespace kinecal::detail {
   return excess_of(joint, position - turn) > margin && excess_of(joint, position + turn) > margin;
 }
 
-/// A quarter or half turn that brings nearly all positions of a joint into its limits; nullopt if
-/// none does.
+/// True if all positions are within the limits when a turn is added, as far as limits are exact.
+[[nodiscard]] inline bool fits_turned(const UsedJoint& joint, double turn) {
+  constexpr double kRounding = 0.01;  // radians
+  return std::all_of(joint.positions.begin(), joint.positions.end(),
+                     [&](double q) { return excess_of(joint, q + turn) <= kRounding; });
+}
+
+/// The smallest quarter or half turn that brings all positions of a joint into its limits; nullopt
+/// if none does.
 [[nodiscard]] inline std::optional<double> turn_into_limits(const UsedJoint& joint) {
   if (!joint.limits || !turns(joint.joint.type)) return std::nullopt;
   constexpr double kHalf = std::numbers::pi;
-  for (const double shift : {kHalf, -kHalf, 0.5 * kHalf, -0.5 * kHalf}) {
-    const auto outside = std::count_if(joint.positions.begin(), joint.positions.end(),
-                                       [&](double q) { return is_outside(joint, q + shift); });
-    if (50 * outside <= std::ssize(joint.positions)) return shift;
+  for (const double turn : {0.5 * kHalf, -0.5 * kHalf, kHalf, -kHalf}) {
+    if (fits_turned(joint, turn)) return turn;
   }
   return std::nullopt;
 }

@@ -7,12 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <string>
 
 #include "kinecal/config/doubts/exchanged_joints.ipp"
 #include "kinecal/config/doubts/joint_limits.ipp"
+#include "kinecal/config/doubts/joint_order.ipp"
 #include "kinecal/config/doubts/occurrences.hpp"
+#include "kinecal/config/doubts/outside_limits.ipp"
 
 namespace kinecal::detail {
 
@@ -112,48 +113,15 @@ inline bool report_absurd(const UsedJoint& joint, std::span<const Sample> sample
   return true;
 }
 
-/// Reports positions outside the limits: far (doubt), slightly or by a turn (warning).
-inline void report_outside(const UsedJoint& joint, std::span<const Sample> samples,
-                           Diagnostics& diagnostics) {
-  if (!joint.limits) return;
-  constexpr double kRounding = 1e-3;  // of limits in a URDF, radians or metres
-  Occurrences far, near;
-  double most_far = 0.0, most_near = 0.0;
-  for (std::size_t i = 0; i < joint.positions.size(); ++i) {
-    const double excess = excess_of(joint, joint.positions[i]);
-    if (excess <= kRounding) continue;
-    const bool is_far = is_outside(joint, joint.positions[i]);
-    (is_far ? far : near).add(joint.samples[i]);
-    double& most = is_far ? most_far : most_near;
-    most = std::max(most, excess);
-  }
-  const auto text = [&](const Occurrences& found, double most) {
-    return fmt::format("position of '{}' is outside its limits {}{}, by up to {:.3g} {}",
-                       joint.joint.name, joint.limits_text(), found.others(), most,
-                       position_unit(joint.joint.type));
-  };
-  if (far.count > 0) {
-    const std::optional<double> turn = turn_into_limits(joint);
-    diagnostics.doubt(
-        place_of(samples, far.first),
-        text(far, most_far) +
-            (turn ? fmt::format("; with {:+.3g} rad they are inside: is its zero another one than "
-                                "the URDF's?",
-                                *turn)
-                  : "; is it the position of another joint, in another unit, or the URDF of "
-                    "another robot?"));
-  } else if (near.count > 0) {
-    diagnostics.warning(place_of(samples, near.first), text(near, most_near));
-  }
-}
-
 void check_joint_positions(std::span<const UsedJoint> joints, std::span<const Sample> samples,
                            Diagnostics& diagnostics) {
   std::vector<bool> explained(joints.size(), false);
-  std::vector<std::size_t> renamed = report_negated(joints, samples, diagnostics);
-  if (renamed.empty()) renamed = report_exchanged(joints, samples, diagnostics);
-  for (const std::size_t j : renamed) explained[j] = true;
-  if (renamed.empty() && report_order(joints, samples, diagnostics)) return;
+  if (!is_one_turned(joints)) {
+    std::vector<std::size_t> renamed = report_negated(joints, samples, diagnostics);
+    if (renamed.empty()) renamed = report_exchanged(joints, samples, diagnostics);
+    for (const std::size_t j : renamed) explained[j] = true;
+    if (renamed.empty() && report_order(joints, samples, diagnostics)) return;
+  }
   for (const bool turning : {true, false}) {
     std::vector<std::size_t> wrong = in_other_unit(joints, turning);
     std::erase_if(wrong, [&](std::size_t j) { return explained[j]; });

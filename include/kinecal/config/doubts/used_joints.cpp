@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "kinecal/config/doubts/joint_limits.ipp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/kinematics/chain.hpp"
 
@@ -103,6 +105,23 @@ std::vector<UsedJoint> used_joints(const Config& config, const Robot& robot,
     }
   }
   return used;
+}
+
+std::vector<UsedJoint> with_initial_zeros(const Config& config, std::vector<UsedJoint> joints) {
+  for (const StepConfig& step : config.steps) {
+    for (const InitialValueConfig& zero : step.initial_values) {
+      for (UsedJoint& joint : joints) {
+        if (joint.joint.name != zero.name) continue;
+        UsedJoint moved = joint;
+        for (double& position : moved.positions) position += zero.value;
+        const auto inside = [&](double position) { return !is_outside(moved, position); };
+        if (std::all_of(moved.positions.begin(), moved.positions.end(), inside)) {
+          joint = std::move(moved);
+        }
+      }
+    }
+  }
+  return joints;
 }
 
 }  // namespace kinecal::detail

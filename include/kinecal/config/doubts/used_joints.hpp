@@ -43,4 +43,9 @@ struct UsedJoint {
 [[nodiscard]] std::vector<UsedJoint> used_joints(const Config& config, const Robot& robot,
                                                  std::span<const Sample> samples);
 
+/// The joints with the zeros of the configuration: where its initial value brings all positions of a
+/// joint into the limits, positions with it.
+[[nodiscard]] std::vector<UsedJoint> with_initial_zeros(const Config& config,
+                                                        std::vector<UsedJoint> joints);
+
 }  // namespace kinecal::detail

@@ -10,6 +10,8 @@
 #include <set>
 
 #include "kinecal/config/assemble.hpp"
+#include "kinecal/config/doubts/exchanged_joints.ipp"
+#include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
@@ -94,6 +96,22 @@ void hold_in_search(const std::vector<std::string>& names, const AnyProblem& pro
   }
 }
 
+/// The turns of zeros with which positions outside the limits are inside.
+[[nodiscard]] Turns turns_into_limits(const Config& config, const Robot& robot,
+                                      std::span<const Sample> samples, const IdentifyTask& task) {
+  Turns all;
+  for (const UsedJoint& joint : with_initial_zeros(config, used_joints(config, robot, samples))) {
+    if (count_outside(joint, joint) == 0) continue;
+    const auto turn = turn_into_limits(joint);
+    const auto candidate =
+        std::find_if(task.candidates.begin(), task.candidates.end(),
+                     [&](const IdentifyCandidate& of) { return of.name == joint.joint.name; });
+    if (!turn || candidate == task.candidates.end()) continue;
+    all.emplace_back(static_cast<int>(candidate - task.candidates.begin()), *turn);
+  }
+  return all;
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -111,7 +129,8 @@ RobotSearch search_robot(const Config& config, const Robot& robot, std::span<con
   const AnyProblem& problem = *calibration.steps.front().problem;
   all.task = identify_task(config, problem, samples, limits.geometry_only);
   detail::hold_in_search(limits.hold, problem, calibration.steps.front().unknown_frames, all.task);
-  all.found = identify(calibration, samples, all.task.base, all.task.candidates);
+  all.found = identify(calibration, samples, all.task.base, all.task.candidates,
+                       detail::turns_into_limits(config, robot, samples, all.task));
   all.config = identified_config(config, all.task, all.found, problem);
   Diagnostics of_others;  // what is not free any more
   hold_parameters(all.config, limits.hold, of_others);
