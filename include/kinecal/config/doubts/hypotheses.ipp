@@ -21,6 +21,7 @@ namespace kinecal::detail {
 struct Hypothesis {
   std::string undone;  ///< "with the positions of 'a' and 'b' exchanged"
   std::function<void(Sample&)> correct = {};
+  std::function<void(std::vector<Sample>&)> correct_all = {};  ///< where samples depend on others
   std::function<void(Config&)> correct_config = {};
   double shrinks = 1.0;  ///< factor on lengths, and so on residuals
 };
@@ -121,6 +122,7 @@ inline void add_sensor_hypotheses(const Config& config, std::vector<Hypothesis>&
     all.push_back({of + "taken as millimetres",
                    points([](const Point& p) -> Point { return 1e-3 * p; }),
                    {},
+                   {},
                    1e-3});
     all.push_back(
         {of + "multiplied by 1000", points([](const Point& p) -> Point { return 1e3 * p; })});
@@ -141,6 +143,7 @@ inline void add_model_hypotheses(const Config& config, std::vector<Hypothesis>& 
       if (first.frame != second.frame) {
         all.push_back({fmt::format("with the frames of the models '{}' and '{}' exchanged",
                                    first.name, second.name),
+                       {},
                        {},
                        [first, second](Config& changed) {
                          for (StepConfig& step : changed.steps) {

@@ -11,7 +11,7 @@
 
 #include "kinecal/config/doubts/absorbed_scale.ipp"
 #include "kinecal/config/doubts/cause_solver.ipp"
-#include "kinecal/config/doubts/hypotheses.ipp"
+#include "kinecal/config/doubts/pose_hypotheses.ipp"
 #include "kinecal/config/doubts/some_samples.ipp"
 #include "kinecal/text/first_names.hpp"
 
@@ -132,9 +132,16 @@ std::vector<std::string> likely_causes(const Config& config, const Robot& robot,
   const std::vector<Sample> some = detail::some_of(samples);
   const auto now = detail::solve_samples(solver, config, some);
   std::vector<detail::Cause> found;
-  for (const auto& hypothesis :
-       detail::hypotheses(config, detail::used_joints(config, robot, some))) {
+  std::vector<detail::Hypothesis> all =
+      detail::hypotheses(config, detail::used_joints(config, robot, some));
+  detail::add_pose_hypotheses(config, some, all);
+  for (const detail::Hypothesis& hypothesis : all) {
     std::vector<Sample> changed = some;
+    if (hypothesis.correct_all) {
+      changed.assign(samples.begin(), samples.end());
+      hypothesis.correct_all(changed);
+      changed = detail::some_of(changed);
+    }
     Config changed_config = config;
     if (hypothesis.correct) std::for_each(changed.begin(), changed.end(), hypothesis.correct);
     if (hypothesis.correct_config) hypothesis.correct_config(changed_config);
