@@ -110,6 +110,19 @@ TEST(ChooseImages, ALensThatCannotBeUsedIsRefusedForRawImagesOnly) {
   EXPECT_THROW((void)scenario.calibration(), InputError);
 }
 
+TEST(ChooseImages, ADistortionWithTooFewNumbersIsNamed) {
+  Scenario scenario = board(lens(), ImageKind::raw);
+  for (Sample& sample : scenario.samples) {
+    sample.observations[1].camera->distortion_model = "plumb_bob";
+    sample.observations[1].camera->d = {0.1, 0.2, 0.3};
+  }
+  Diagnostics refused;
+  choose_images(scenario.config, scenario.robot, scenario.samples, refused);
+  EXPECT_THAT(
+      refused.errors,
+      ElementsAre(HasSubstr("sensor 'eye': plumb_bob has 5 distortion coefficients, not 3")));
+}
+
 /// Without K by P, and without P by K; both are solved and neither is refused as impossible.
 TEST(ChooseImages, OneMatrixOfZerosIsNoObstacle) {
   CameraInfo no_k = lens(), no_p = lens();

@@ -88,6 +88,8 @@ void choose_image(Config& config, const Robot& robot, std::span<const Sample> sa
     if (options.lens.empty()) {
       diagnostics.note(camera.place,
                        fmt::format("{}: image taken as rectified; {}", sensor, options.no_raw));
+    } else if (!lens_named(options.lens).empty()) {
+      diagnostics.error(camera.place, fmt::format("{}: {}", sensor, options.no_raw));
     } else {  // raw pixels taken as rectified would be wrong by all of the distortion
       diagnostics.error(
           camera.place,

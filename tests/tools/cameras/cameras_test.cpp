@@ -265,6 +265,125 @@ TEST(CamerasAlone, OneBadCornerDoesNotDecideTheLens) {
   EXPECT_EQ(camera.config.steps.front().models[1].lens, "plumb_bob");
 }
 
+/// The errors of a camera whose lens is searched for.
+std::vector<std::string> errors_of(std::vector<Sample> samples,
+                                   const std::string& text = initial_cameras({"left"})) {
+  return Cameras(text, std::move(samples)).diagnostics.errors;
+}
+
+TEST(CamerasAlone, AnotherBoardIsAskedFor) {
+  for (const int columns : {6, 7}) {
+    std::vector<Sample> samples = whole_views(9);
+    for (Sample& sample : samples) {
+      for (Observation& seen : sample.observations) {
+        if (seen.sensor != "board") continue;
+        for (int i = 0; i < 48; ++i) {  // eight are right
+          seen.features[static_cast<std::size_t>(i)].point = {0.06 * (i % columns),
+                                                              0.06 * (i / columns), 0.0};
+        }
+      }
+    }
+    EXPECT_THAT(
+        errors_of(samples),
+        ElementsAre(testing::AllOf(HasSubstr("no lens fits"),
+                                   HasSubstr("are the columns, rows and ids of the target right?"),
+                                   Not(HasSubstr("not a number")))));
+  }
+}
+
+/// Views of a board that is parallel to the image.
+std::vector<Sample> parallel_views(unsigned seed) {
+  CameraInfo info;
+  info.k = {620, 0, 645, 0, 620, 470, 0, 0, 1};
+  info.d = {-0.27, 0.07, 0.0, 0.0, 0.0};
+  const auto camera = any_built_in(lens_camera("plumb_bob", ImageKind::raw));
+  const auto settings = camera->settings({"left", {}, info});
+  std::vector<Sample> samples(20, whole_views(1)[0]);
+  SeededRandom random(seed);
+  for (Sample& sample : samples) {
+    const Pose<double> pose{
+        exp(Vector3<double>(0, 0, random.uniform(-0.3, 0.3))),
+        {random.uniform(-0.3, -0.05), random.uniform(-0.2, -0.05), random.uniform(0.6, 1.2)}};
+    for (Observation& seen : sample.observations) {
+      if (seen.sensor != "left") continue;
+      for (Feature& feature : seen.features) {
+        const int i = *feature.id;
+        const Vector3<double> p = pose * Vector3<double>(0.06 * (i % 8), 0.06 * (i / 8), 0.0);
+        feature.point.head<2>() =
+            camera->predict(p, settings) + 0.3 * Eigen::Vector2d(random.normal(), random.normal());
+      }
+    }
+  }
+  return samples;
+}
+
+/// Whether some lens fits by chance, or none.
+TEST(CamerasAlone, ParallelViewsAreToBeTilted) {
+  for (const unsigned seed : {1U, 6U}) {
+    Cameras camera(initial_cameras({"left"}), parallel_views(seed));
+    const std::vector<std::string> said =
+        camera.diagnostics.errors.empty()
+            ? calibrate_and_judge(camera.calibration, camera.samples).judgement.reasons
+            : camera.diagnostics.errors;
+    EXPECT_THAT(said, testing::Contains(HasSubstr("tilt the target by 30 degrees to all sides")))
+        << seed;
+  }
+}
+
+/// The first view of 'left'.
+Observation& left_of(Sample& sample) {
+  return *std::find_if(sample.observations.begin(), sample.observations.end(),
+                       [](const Observation& seen) { return seen.sensor == "left"; });
+}
+
+TEST(CamerasAlone, CornersThatWereNotSeenAreNamed) {
+  std::vector<Sample> samples = whole_views(9);
+  left_of(samples[1]).features[3].point = {-1.0, -1.0, 0.0};
+  EXPECT_THAT(errors_of(samples),
+              ElementsAre(HasSubstr(": a feature of sensor 'left' is at (-1, -1), outside its "
+                                    "image, the first here; leave out corners")));
+  samples = whole_views(9);
+  for (std::size_t i = 0; i < 2; ++i) left_of(samples[1]).features[i].point.setZero();
+  EXPECT_THAT(errors_of(samples),
+              ElementsAre(HasSubstr("2 features of sensor 'left' are at (0, 0), the first here")));
+}
+
+TEST(CamerasAlone, CameraInfoThatCannotBeHasItsPlace) {
+  std::vector<Sample> samples = whole_views(9);
+  for (Sample& sample : samples) {
+    CameraInfo& info = *left_of(sample).camera;
+    info.k = {600, 0, 640, 0, 600, 480, 0, 0, 1};
+    info.p = {600, 0, 640, 0, 0, 600, 480, 0, 0, 0, 1, 0};
+    info.distortion_model = "plumb_bob";
+    info.d = {0.1, 0.2, 0.3};
+  }
+  EXPECT_THAT(errors_of(samples),
+              ElementsAre(samples[0].source +
+                          ": sensor 'left': plumb_bob has 5 distortion coefficients, not 3"));
+  for (Sample& sample : samples) {
+    left_of(sample).camera->d.clear();
+    left_of(sample).camera->k[0] = -600.0;
+  }
+  EXPECT_THAT(errors_of(samples),
+              ElementsAre(samples[0].source +
+                          ": sensor 'left': the focal lengths in camera_info are not positive"));
+}
+
+TEST(CamerasAlone, ASizeThatIsMissingIsNamed) {
+  std::vector<Sample> samples = whole_views(9);
+  const std::string text = cameras_config({"left"}, "plumb_bob", "k1 k2");
+  left_of(samples[4]).camera.reset();
+  EXPECT_THAT(errors_of(samples, text),
+              ElementsAre(testing::AllOf(
+                  HasSubstr(samples[4].source + ": sensor 'left' has no camera_info"),
+                  HasSubstr("it is 1280x960 pixels"))));
+  for (Sample& sample : samples) left_of(sample).camera.reset();
+  const Cameras none(text, samples);
+  EXPECT_THAT(none.diagnostics.errors, IsEmpty());
+  EXPECT_THAT(none.diagnostics.warnings,
+              testing::Contains(HasSubstr("the size of its images is in no sample")));
+}
+
 TEST(CamerasAlone, WhatCannotBeIsSaid) {
   const std::string text = cameras_config({"camera"}, "equidistant", "k1");
   const auto errors = [](const std::string& config, std::vector<Sample> samples) {

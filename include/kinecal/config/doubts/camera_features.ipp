@@ -14,6 +14,7 @@
 
 #include "kinecal/config/doubts/occurrences.hpp"
 #include "kinecal/config/doubts/sensor_points.hpp"
+#include "kinecal/config/doubts/unseen_corners.ipp"
 #include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/files/diagnostics.hpp"
@@ -57,6 +58,7 @@ inline void check_inside(const RecordedPoints& recorded, std::span<const Vector3
 /// Error or doubt: features that are not pixels.
 inline void check_pixels(const RecordedPoints& recorded, std::span<const Sample> samples,
                          Diagnostics& diagnostics) {
+  check_unseen(recorded.model.name, samples, diagnostics);
   const CameraInfo* camera = sized_camera(recorded, samples);
   if (camera == nullptr) return;
   double most = 0.0;

@@ -1,17 +1,23 @@
-// What start_cameras() cannot begin with: sensors that are in no sample, images of two sizes.
+// What start_cameras() cannot begin with: sensors that are in no sample, images of two sizes, intrinsics that cannot
+// be, corners that were not seen.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "kinecal/config/config.hpp"
+#include "kinecal/config/doubts/unseen_corners.ipp"
 #include "kinecal/config/missing_sensors.ipp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/samples/sample.hpp"
+#include "kinecal/sensors/lens.hpp"
+#include "kinecal/tools/cameras/known_cameras.ipp"
 #include "kinecal/tools/cameras/target_pairs.ipp"
 
 namespace kinecal::detail {
@@ -58,6 +64,62 @@ namespace kinecal::detail {
     return false;
   }
   return true;
+}
+
+/// Reports samples without the size of a camera's images, where others have it; warns if none has it.
+inline void check_sized(const ModelConfig& camera, const std::vector<Sample>& samples,
+                        Diagnostics& diagnostics) {
+  const Sample *sized = nullptr, *unsized = nullptr;
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(camera.name);
+    if (seen == nullptr) continue;
+    const bool has_size = seen->camera && seen->camera->width > 0 && seen->camera->height > 0;
+    const Sample*& of = has_size ? sized : unsized;
+    if (of == nullptr) of = &sample;
+  }
+  if (unsized == nullptr) return;
+  if (sized == nullptr) {
+    diagnostics.warning(
+        camera.place,
+        fmt::format("camera '{}': the size of its images is in no sample, so the written camera "
+                    "file has image_width 0; give width and height in camera_info",
+                    camera.name));
+    return;
+  }
+  const CameraInfo& info = *sized->observation(camera.name)->camera;
+  diagnostics.errors.push_back(
+      fmt::format("{}: sensor '{}' has no camera_info with the size of its image here, at {} it is "
+                  "{}x{} pixels; "
+                  "give it to all samples, or leave this one out",
+                  unsized->source, camera.name, sized->source, info.width, info.height));
+}
+
+/// Reports a camera_info with intrinsics that cannot be.
+inline void check_intrinsics(const ModelConfig& camera, const std::vector<Sample>& samples,
+                             Diagnostics& diagnostics) {
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(camera.name);
+    if (seen == nullptr || !seen->camera || !is_known(&*seen->camera)) continue;
+    try {  // a camera whose lens is given, or searched for, has raw images
+      (void)Lens(*seen->camera, camera.lens.empty() ? camera.image : ImageKind::raw);
+    } catch (const SettingsError& e) {
+      diagnostics.errors.push_back(
+          fmt::format("{}: sensor '{}': {}", sample.source, camera.name, e.what()));
+      return;
+    }
+  }
+}
+
+/// Reports what is wrong with the samples of cameras, before anything is solved.
+inline void check_cameras(const Config& config, const Robot& robot,
+                          const std::vector<Sample>& samples, Diagnostics& diagnostics) {
+  std::set<std::string> checked;
+  for (const TargetPair& pair : target_pairs(config, robot)) {
+    if (!checked.insert(pair.camera->name).second) continue;
+    check_sized(*pair.camera, samples, diagnostics);
+    check_intrinsics(*pair.camera, samples, diagnostics);
+    check_unseen(pair.camera->name, samples, diagnostics);
+  }
 }
 
 }  // namespace kinecal::detail

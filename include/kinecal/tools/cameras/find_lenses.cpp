@@ -77,7 +77,7 @@ void bound_outliers(Config& config) {
 }
 
 /// Calibrates a lens and predicts what was held out.
-void try_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
+void calibrate_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
   Diagnostics diagnostics;
   bound_outliers(lens.config);
   start_cameras(lens.config, robot, lens.samples, diagnostics);
@@ -90,6 +90,7 @@ void try_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
   const Calibration calibration = assemble(lens.config, robot, lens.samples, diagnostics);
   if (!diagnostics.errors.empty()) {
     lens.fault = diagnostics.errors.front();
+    lens.is_wrong_input = true;
     return;
   }
   const CalibrationResult result = calibrate(calibration);
@@ -109,7 +110,8 @@ void try_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
   const Undetermined unknown =
       undetermined(last, values, result.table, lens.samples, names_with_lens(camera, lens.name));
   if (!unknown.not_at_all.empty()) {
-    lens.fault = "samples do not determine " + unknown.not_at_all;
+    lens.unknown = unknown.not_at_all;
+    lens.fault = "samples do not determine " + lens.unknown;
     return;
   }
   lens.hardly = unknown.hardly;
@@ -120,24 +122,15 @@ void try_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
   }
 }
 
-/// "plumb_bob 22.7 px, equidistant 0.84 px, double_sphere: folds over"
-[[nodiscard]] std::string errors_text(const std::vector<TriedLens>& tried) {
-  std::string text;
-  for (const TriedLens& lens : tried) {
-    text += text.empty() ? "" : ", ";
-    text += lens.fault.empty() ? fmt::format("{} {:.4g} px", lens.text(), lens.error())
-                               : fmt::format("{}: {}", lens.text(), lens.fault);
-    if (!lens.hardly.empty()) text += fmt::format(" (hardly determines {})", lens.hardly);
+/// The same; a lens under which the samples make no sense is out.
+void try_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
+  try {
+    calibrate_lens(robot, camera, lens);
+  } catch (const SettingsError&) {  // a coefficient that is not a number
+    lens.fault = "does not fit";
+  } catch (const std::domain_error&) {  // a corner that its camera does not see
+    lens.fault = "does not fit";
   }
-  return text;
-}
-
-/// Why no lens fits: once, if it is the same for all.
-[[nodiscard]] std::string faults_text(const std::vector<TriedLens>& tried) {
-  const std::string& fault = tried.front().fault;
-  const bool is_same = std::all_of(tried.begin(), tried.end(),
-                                   [&](const TriedLens& lens) { return lens.fault == fault; });
-  return is_same ? fault : errors_text(tried);
 }
 
 /// The first lens that no other one beats; nullptr if none fits.
@@ -166,15 +159,13 @@ void find_lenses(Config& config, const Robot& robot, std::vector<Sample>& sample
     const Config alone = detail::without_others(given, robot, camera);
     for (const auto& [lens, superfluous] : detail::kLenses) {
       const std::string name(lens), held(superfluous);
-      tried.push_back(
-          {name, held, detail::with_lens(alone, camera, name, held), samples, {}, {}, {}});
+      tried.push_back({name, held, detail::with_lens(alone, camera, name, held), samples});
       detail::try_lens(robot, camera, tried.back());
     }
     const detail::TriedLens* best = detail::best_of(tried, false);
     if (best == nullptr) best = detail::best_of(tried, true);
     if (best == nullptr) {
-      diagnostics.error(camera.place, fmt::format("sensor '{}': no lens fits: {}", camera.name,
-                                                  detail::faults_text(tried)));
+      detail::report_faults(camera, tried, diagnostics);
       continue;
     }
     diagnostics.note(

@@ -5,6 +5,7 @@
 #include "kinecal/config/choose_images.hpp"
 #include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/own_frames.hpp"
+#include "kinecal/tools/cameras/camera_checks.ipp"
 #include "kinecal/tools/cameras/find_lenses.hpp"
 #include "kinecal/tools/cameras/start_cameras.hpp"
 
@@ -15,6 +16,7 @@ bool prepare_cameras(Robot& robot, Config& config, std::vector<Sample>& samples,
   const std::size_t before = diagnostics.errors.size();
   const auto is_good = [&] { return diagnostics.errors.size() == before; };
   robot = with_own_frames(robot, config, samples, diagnostics);
+  if (is_good()) detail::check_cameras(config, robot, samples, diagnostics);
   if (is_good()) find_lenses(config, robot, samples, diagnostics);
   if (is_good()) start_cameras(config, robot, samples, diagnostics);
   if (!is_good()) return false;

@@ -47,6 +47,13 @@ namespace {
   });
 }
 
+/// False if a camera was not found: no lens images the target as it was seen.
+[[nodiscard]] bool is_finite(const CameraInfo& info) {
+  const auto number = [](double value) { return std::isfinite(value); };
+  return std::all_of(info.k.begin(), info.k.end(), number) &&
+         std::all_of(info.d.begin(), info.d.end(), number);
+}
+
 /// Makes the coefficients zero that are held: nothing is known of them.
 void drop_held(const Config& config, const ModelConfig& camera, CameraInfo& info) {
   const std::shared_ptr<const AnySensor> sensor = sensor_of(camera);
@@ -96,6 +103,13 @@ void start_cameras(Config& config, const Robot& robot, std::vector<Sample>& samp
                           fmt::format("camera '{}': no view of '{}' has four corners of a flat "
                                       "target, so nothing says where to begin; give its "
                                       "intrinsics",
+                                      pair.camera->name, pair.target->name));
+        continue;
+      }
+      if (!detail::is_finite(single->info)) {
+        diagnostics.error(pair.camera->place,
+                          fmt::format("camera '{}': no lens fits its views of '{}'; are the "
+                                      "columns, rows and ids of the target right?",
                                       pair.camera->name, pair.target->name));
         continue;
       }

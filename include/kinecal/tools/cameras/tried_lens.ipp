@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "kinecal/config/config.hpp"
+#include "kinecal/config/parameters_from_config.hpp"
+#include "kinecal/files/diagnostics.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {
@@ -39,9 +43,11 @@ struct TriedLens {
   std::string held;  ///< a coefficient that is zero and held; empty: none
   Config config;
   std::vector<Sample> samples;
-  std::vector<double> squares;  ///< held_out_squares()
-  std::string fault;            ///< why it is out; empty: it is not
-  std::string hardly;           ///< a parameter that the samples hardly determine; empty: none
+  std::vector<double> squares = {};  ///< held_out_squares()
+  std::string fault = {};            ///< why it is out; empty: it is not
+  bool is_wrong_input = false;       ///< the fault is an error with its place, not one of this lens
+  std::string unknown = {};          ///< a parameter that the samples do not determine; empty: none
+  std::string hardly = {};           ///< a parameter that the samples hardly determine; empty: none
 
   /// "plumb_bob without k3"
   [[nodiscard]] std::string text() const { return held.empty() ? name : name + " without " + held; }
@@ -67,5 +73,44 @@ struct TriedLens {
     return differences.is_positive() || ratios.is_positive();
   }
 };
+
+/// "plumb_bob 22.7 px, equidistant 0.84 px, double_sphere: folds over"
+[[nodiscard]] inline std::string errors_text(const std::vector<TriedLens>& tried) {
+  std::string text;
+  for (const TriedLens& lens : tried) {
+    text += text.empty() ? "" : ", ";
+    text += lens.fault.empty() ? fmt::format("{} {:.4g} px", lens.text(), lens.error())
+                               : fmt::format("{}: {}", lens.text(), lens.fault);
+    if (!lens.hardly.empty()) text += fmt::format(" (hardly determines {})", lens.hardly);
+  }
+  return text;
+}
+
+/// Reports why no lens fits: what is wrong with the views, if some lens says it.
+inline void report_faults(const ModelConfig& camera, const std::vector<TriedLens>& tried,
+                          Diagnostics& diagnostics) {
+  const auto wrong = std::find_if(tried.begin(), tried.end(),
+                                  [](const TriedLens& lens) { return lens.is_wrong_input; });
+  if (wrong != tried.end()) {
+    diagnostics.errors.push_back(wrong->fault);
+    return;
+  }
+  const bool is_flat = std::any_of(tried.begin(), tried.end(), [&](const TriedLens& lens) {
+    return lens.unknown == parameter_name(camera.param_name, "fx") ||
+           lens.unknown == parameter_name(camera.param_name, "fy");
+  });
+  const bool is_same = std::all_of(tried.begin(), tried.end(), [&](const TriedLens& lens) {
+    return lens.fault == tried.front().fault;
+  });
+  const std::string faults = is_same ? tried.front().fault : errors_text(tried);
+  diagnostics.error(
+      camera.place,
+      is_flat ? fmt::format("these views do not tell the focal length of '{}': tilt the target by "
+                            "30 degrees to all sides ({})",
+                            camera.name, faults)
+              : fmt::format("sensor '{}': no lens fits ({}); are the columns, rows and ids of the "
+                            "target right?",
+                            camera.name, faults));
+}
 
 }  // namespace kinecal::detail

@@ -1,0 +1,45 @@
+// Corners that were not seen, but are in the samples: some detectors write (-1, -1) or (0, 0) for them.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal::detail {
+
+/// Reports features of a camera at (-1, -1), and two of one sample at (0, 0): no corner that was seen is there.
+inline void check_unseen(const std::string& camera, std::span<const Sample> samples,
+                         Diagnostics& diagnostics) {
+  for (const double mark : {-1.0, 0.0}) {
+    const std::ptrdiff_t fewest = mark < 0.0 ? 1 : 2;
+    std::ptrdiff_t count = 0;
+    std::string first;
+    for (const Sample& sample : samples) {
+      const Observation* seen = sample.observation(camera);
+      if (seen == nullptr) continue;
+      const auto here =
+          std::count_if(seen->features.begin(), seen->features.end(), [&](const Feature& feature) {
+            return feature.point.x() == mark && feature.point.y() == mark;
+          });
+      if (here < fewest) continue;
+      if (count == 0) first = sample.source;
+      count += here;
+    }
+    if (count == 0) continue;
+    diagnostics.errors.push_back(fmt::format(
+        "{}: {} of sensor '{}' {} at ({}, {}), {}the first here; leave out corners that were not "
+        "seen",
+        first, count == 1 ? "a feature" : fmt::format("{} features", count), camera,
+        count == 1 ? "is" : "are", mark, mark, mark < 0.0 ? "outside its image, " : ""));
+    return;
+  }
+}
+
+}  // namespace kinecal::detail
