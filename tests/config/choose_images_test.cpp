@@ -138,6 +138,12 @@ TEST(ChooseImages, OneMatrixOfZerosIsNoObstacle) {
     EXPECT_NEAR(result.blocks[0].after.rms, std::sqrt(2.0) * 0.29, 0.03);
     EXPECT_EQ(impossible_camera(calibration, result.table, scenario.samples), "");
   }
+  Scenario mirrored = board(lens(), ImageKind::raw);
+  const Calibration calibration = mirrored.calibration();
+  CalibrationResult result = calibrate(calibration);
+  result.table["eye_fx"].value = -2.0123456789;
+  EXPECT_THAT(impossible_camera(calibration, result.table, mirrored.samples),
+              testing::ContainsRegex("lengths -[0-9.]{1,7} and .*is the image mirrored"));
   no_k.p = {};
   Scenario scenario = board(lens(), ImageKind::raw);
   for (Sample& sample : scenario.samples) sample.observations[1].camera = no_k;

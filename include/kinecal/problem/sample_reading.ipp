@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -15,6 +16,21 @@
 
 namespace kinecal::detail {
 
+/// The only name of a sample that has one letter more or less at its end than the joint: of names as short as
+/// "a3", did_you_mean() finds none.
+[[nodiscard]] inline std::string did_you_mean_longer(const std::string& joint,
+                                                     const std::vector<std::string>& names) {
+  std::string found;
+  for (const std::string& name : names) {
+    const auto& [shorter, longer] =
+        std::minmax(joint, name, [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    if (shorter.size() + 1 != longer.size() || !longer.starts_with(shorter)) continue;
+    if (!found.empty()) return "";
+    found = name;
+  }
+  return found.empty() ? "" : "; did you mean '" + found + "'?";
+}
+
 /// "joint 'elbow' is not in the sample", or that the pose of a floating joint is not, with the
 /// nearest name.
 /// @param joint  or a coordinate of a floating joint
@@ -23,8 +39,9 @@ namespace kinecal::detail {
                                               const std::string& whose = "") {
   const std::optional<FloatingCoordinate> part = floating_coordinate(joint);
   if (!part) {
+    const std::string near = did_you_mean(joint, sample.joint_names);
     return "joint '" + joint + "' is not in the sample" + whose +
-           did_you_mean(joint, sample.joint_names);
+           (near.empty() ? did_you_mean_longer(joint, sample.joint_names) : near);
   }
   std::vector<std::string> names;
   for (const auto& [name, pose] : sample.poses) names.push_back(name);

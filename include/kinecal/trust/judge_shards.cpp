@@ -8,9 +8,9 @@
 #include <memory>
 #include <utility>
 
-#include "kinecal/text/reading.hpp"
 #include "kinecal/trust/assess_shards.hpp"
 #include "kinecal/trust/estimated_noise.hpp"
+#include "kinecal/trust/judge_files.ipp"
 #include "kinecal/trust/shard_folds.ipp"
 
 namespace kinecal {
@@ -28,9 +28,7 @@ class ShardProcedure {
     JudgedResult judged = noise_.settle(calibration_.first, [&] { return fit(); });
     judged.judgement = judge(calibration_.first, judged.result, judged.assessments, options_.doubts,
                              options_.refutable);
-    judge_misfits(judged.judgement);
-    judge_far(judged.judgement);
-    judge_copies(judged.judgement);
+    judge_files(found_, calibration_.names, judged.judgement);
     return judged;
   }
 
@@ -156,59 +154,15 @@ class ShardProcedure {
     });
     judged.assessments.push_back(std::move(found.assessment));
     merge_statistics(judged.result.blocks, std::move(found.blocks));
-    misfits_ = std::move(found.misfits);
-    far_ = std::move(found.far);
-    copies_ = std::move(found.copies);
+    found_ = std::move(found);
     return true;
-  }
-
-  /// Shards that do not fit the others.
-  void judge_misfits(Judgement& judgement) const {
-    constexpr double kMuch = 2.0;
-    if (misfits_.size() < 3) return;
-    std::vector<double> sorted = misfits_;
-    std::sort(sorted.begin(), sorted.end());
-    const double median = sorted[sorted.size() / 2];
-    for (std::size_t shard = 0; shard < misfits_.size(); ++shard) {
-      if (misfits_[shard] <= kMuch * median) continue;
-      char times[48];
-      (void)std::snprintf(times, sizeof times, "%.1f", misfits_[shard] / median);
-      judgement.add(Grade::use_with_care, calibration_.names[shard] + ": its residuals are " +
-                                              times + " times those of most files");
-    }
-  }
-
-  /// Features that a fit of one file would leave out with their samples.
-  void judge_far(Judgement& judgement) const {
-    for (const FarFeature& far : far_) {
-      char times[48];
-      (void)std::snprintf(times, sizeof times, "%.0f times the noise", far.times);
-      judgement.add(Grade::use_with_care,
-                    calibration_.names[static_cast<std::size_t>(far.shard)] +
-                        ": a feature of error block '" + far.block + "' is " +
-                        reading(far.distance, far.unit) + " off, " + times +
-                        ", and decides a part of the result: kinecal calibrate of this "
-                        "file names its sample");
-    }
-  }
-
-  /// Files that are there twice.
-  void judge_copies(Judgement& judgement) const {
-    for (const auto& [copy, first] : copies_) {
-      judgement.add(Grade::use_with_care,
-                    calibration_.names[static_cast<std::size_t>(copy)] + ": has the samples of " +
-                        calibration_.names[static_cast<std::size_t>(first)] +
-                        "; copies count twice and say nothing new; leave one out");
-    }
   }
 
   ShardedCalibration& calibration_;
   const ProcedureOptions& options_;
   EstimatedNoise noise_;
   std::map<std::pair<std::size_t, int>, std::shared_ptr<AnyProblem>> problems_;
-  std::vector<double> misfits_;
-  std::vector<FarFeature> far_;
-  std::vector<std::pair<int, int>> copies_;
+  ShardAssessment found_;  ///< of the last step
 };
 
 }  // namespace

@@ -203,6 +203,31 @@ TEST_F(JointPositions, InMillimetresAreAnError) {
   EXPECT_THAT(errors[0], HasSubstr("they look like millimetres; positions must be in metres"));
 }
 
+TEST_F(JointPositions, ThatStopWhileOtherJointsMoveAreADoubtThatAFitRefutes) {
+  for (std::size_t n = 20; n < samples.size(); ++n) {
+    position(samples[n], "elbow") = position(samples[19], "elbow");
+  }
+  const Diagnostics diagnostics = found();
+  EXPECT_THAT(diagnostics.doubts,
+              testing::Contains(AllOf(HasSubstr("s.yaml:191: the reading of 'elbow' is"),
+                                      HasSubstr("in this and all 10 samples after it"))));
+  EXPECT_EQ(diagnostics.refutable, diagnostics.doubts);
+  for (Sample& sample : samples) position(sample, "elbow") = position(samples[19], "elbow");
+  EXPECT_THAT(found().doubts, testing::Not(testing::Contains(HasSubstr("has its driver"))));
+}
+
+TEST_F(JointPositions, UnderAMisspeltShortNameAreAnErrorThatNamesIt) {
+  replace(urdf, "\"pan\"", "\"a3\"");
+  for (Sample& sample : samples) sample.joint_names[0] = "a33";
+  try {
+    (void)found();
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("joint 'a3' is not in the sample"),
+                                    HasSubstr("; did you mean 'a33'?")));
+  }
+}
+
 TEST_F(JointPositions, OfAJointThatNeverMovesAreADoubtIfItsOffsetIsFree) {
   for (Sample& sample : samples) position(sample, "pan") = 0.3;
   EXPECT_THAT(found().doubts, testing::Not(testing::Contains(HasSubstr("never moves"))));

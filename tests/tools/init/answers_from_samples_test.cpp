@@ -12,6 +12,7 @@
 namespace kinecal {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 Robot shipped_robot(const std::string& name) {
@@ -127,6 +128,10 @@ TEST(AnswersFromSamples, NameWhatTheyLeaveOpen) {
               HasSubstr("'arm', 'table' are the same in all samples"));
   EXPECT_THAT(why(moving({"joint_a1"}, {board_of("laser", "l"), board_of("ball", "smr")})),
               HasSubstr("none of the joints of the samples (joint_a1, ...) is in the URDF"));
+  const Observation blind{"laser", {{"optical", {310.0, 2.0, 0.0}}}, {}};  // it moves
+  EXPECT_THAT(
+      why(moving(kFetchArm, {board_of("arm", "board"), blind})),
+      AllOf(HasSubstr("sensor 'laser' has no camera_info"), HasSubstr("--camera laser=FILE")));
   const Observation eye = camera_of("eye", "head_camera_rgb_optical_frame", 0.0);
   EXPECT_THAT(why(moving(kFetchArm, {board_of("arm", "b"), eye, camera_of("other", "o", 0.0)})),
               HasSubstr("several cameras, 'eye', 'other'"));

@@ -27,6 +27,7 @@ void find_doubts(const CalibrationInput& input, Diagnostics& diagnostics) {
   if (samples.empty() || before > 0) return;  // the rest needs models that match the robot
   const std::vector<detail::UsedJoint> joints = detail::used_joints(config, robot, samples);
   detail::check_joint_positions(detail::with_initial_zeros(config, joints), samples, diagnostics);
+  detail::check_stopped_joints(joints, samples, diagnostics);
   detail::check_dropped_observations(config, samples, diagnostics);
   const std::size_t distinct = detail::check_repeated_samples(config, joints, samples, diagnostics);
   if (!is_part && (distinct > 1 || samples.size() == 1)) {

@@ -10,7 +10,8 @@
 namespace kinecal::detail {
 
 /// Warns of joints that mimic a joint that does not exist, or themselves in a circle: they count as
-/// joints of their own, as in ROS; and of joints that move about an axis of length zero.
+/// joints of their own, as in ROS; and of joints that move about an axis of length zero.  An error if the errors so far say that the position
+/// of such a joint is missing: this is their cause.
 /// @param robot              of that URDF
 /// @param text               the URDF, as parse_urdf() took it
 /// @param name_for_messages  its file

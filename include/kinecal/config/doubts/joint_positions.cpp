@@ -135,6 +135,41 @@ void check_joint_positions(std::span<const UsedJoint> joints, std::span<const Sa
   }
 }
 
+/// Number of steps from one sample to the next in which the reading changes.
+/// @param begin, end  samples
+[[nodiscard]] inline std::size_t steps_of(const UsedJoint& joint, std::size_t begin,
+                                          std::size_t end) {
+  std::size_t steps = 0;
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    if (joint.positions[i] != joint.positions[i - 1]) ++steps;
+  }
+  return steps;
+}
+
+void check_stopped_joints(std::span<const UsedJoint> joints, std::span<const Sample> samples,
+                          Diagnostics& diagnostics) {
+  constexpr std::size_t kFewest = 6;
+  const std::size_t all = samples.size();
+  const auto always = [](std::size_t steps, std::size_t of) { return 10 * steps >= 9 * (of - 1); };
+  for (const UsedJoint& joint : joints) {
+    if (joint.positions.size() != all || all < 2 * kFewest) continue;
+    std::size_t first = all - 1;
+    while (first > 0 && joint.positions[first - 1] == joint.positions.back()) --first;
+    const std::size_t last = all - first;
+    if (first < kFewest || last < kFewest || 10 * last < all) continue;
+    if (!always(steps_of(joint, 0, first), first)) continue;  // it moves in some samples only
+    const auto moving = std::count_if(joints.begin(), joints.end(), [&](const UsedJoint& other) {
+      return other.positions.size() == all && always(steps_of(other, first, all), last);
+    });
+    if (2 * static_cast<std::size_t>(moving) < joints.size() || moving == 0) continue;
+    diagnostics.refutable_doubt(
+        place_of(samples, joint.samples[first]),
+        fmt::format("the reading of '{}' is {:.6g} in this and all {} after it, while other joints "
+                    "move; has its driver or topic stopped?",
+                    joint.joint.name, joint.positions[first], counted(last - 1, "sample")));
+  }
+}
+
 void check_still_joints(const Config& config, std::span<const UsedJoint> joints,
                         Diagnostics& diagnostics) {
   std::set<std::string> reported;

@@ -22,6 +22,12 @@ namespace kinecal::detail {
 void check_joint_positions(std::span<const UsedJoint> joints, std::span<const Sample> samples,
                            Diagnostics& diagnostics);
 
+/// Doubt: the reading of a joint that moved before is the same in all last samples, while others move.
+/// @param joints   from used_joints()
+/// @param samples  for their source locations
+void check_stopped_joints(std::span<const UsedJoint> joints, std::span<const Sample> samples,
+                          Diagnostics& diagnostics);
+
 /// Doubt: a joint never moves although its offset is free.
 /// @param config  defines which offsets are free, and where
 void check_still_joints(const Config& config, std::span<const UsedJoint> joints,

@@ -107,6 +107,10 @@ inline void complete_camera(CameraInfo& camera, bool has_r, bool has_p, const So
       "be of images that were rectified to it");
 }
 
+/// What a focal length below zero means.
+inline constexpr const char* kMirrored =
+    "; is the image mirrored, or are u and v of the pixels exchanged?";
+
 /// Reports values impossible for a pinhole camera.  One of K and P may be all zero.
 /// @param k_line  of K, from 1; 0 if unknown
 inline void check_camera(const CameraInfo& camera, const SourceLocation& place,
@@ -118,8 +122,9 @@ inline void check_camera(const CameraInfo& camera, const SourceLocation& place,
   if (!has_k && has_p) {
     diagnostics.warning(place, "K is zero; P is used, so pixels must be of rectified images");
   } else if (!(k[0] > 0.0) || !(k[4] > 0.0)) {
-    diagnostics.error(k_place,
-                      fmt::format("focal lengths {} and {} are not greater than zero", k[0], k[4]));
+    diagnostics.error(
+        k_place, fmt::format("focal lengths {:.6g} and {:.6g} are not greater than zero{}", k[0],
+                             k[4], k[0] * k[4] < 0.0 ? kMirrored : ""));
   } else if (k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) {
     diagnostics.error(
         k_place,
@@ -128,10 +133,10 @@ inline void check_camera(const CameraInfo& camera, const SourceLocation& place,
   if (!has_p && has_k) {
     diagnostics.warning(place, "P is zero; K is used");
   } else if (has_p && (!(p[0] > 0.0) || !(p[5] > 0.0))) {
-    diagnostics.error(place,
-                      fmt::format("focal lengths {} and {} of the projection are not greater "
-                                  "than zero",
-                                  p[0], p[5]));
+    diagnostics.error(
+        place, fmt::format("focal lengths {:.6g} and {:.6g} of the projection are not greater "
+                           "than zero{}",
+                           p[0], p[5], p[0] * p[5] < 0.0 ? kMirrored : ""));
   }
   if (camera.width == 0 || camera.height == 0) {
     diagnostics.warning(place, "the size of the image is missing; ROS drivers need it");

@@ -19,6 +19,7 @@ Config config_from_samples(const Robot& robot, std::span<const Sample> samples) 
   } catch (const InputError& error) {
     std::string why = error.what();  // "--arm: ...": of options that only init has
     if (why.starts_with("--")) why.erase(0, why.find(": ") + 2);
+    if (why.find("has no camera_info") != std::string::npos) throw InputError(why);
     throw InputError("the samples do not tell what observes what: " + why +
                      "; write a configuration with 'kinecal init' and give --config");
   }

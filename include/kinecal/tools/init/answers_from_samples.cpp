@@ -61,6 +61,21 @@ namespace {
   return best;
 }
 
+/// @throws InputError  if a sensor without camera_info has points that can only be pixels
+void check_no_pixels(const std::vector<const SeenSensor*>& chains) {
+  constexpr double kMost = 20.0;  // metres in a plane
+  for (const SeenSensor* sensor : chains) {
+    const bool is_far = std::any_of(
+        sensor->first.begin(), sensor->first.end(),
+        [](const Feature& feature) { return feature.point.cwiseAbs().maxCoeff() > kMost; });
+    if (!sensor->varies || !sensor->in_pixels || !is_far) continue;
+    throw InputError("--from: sensor '" + sensor->name +
+                     "' has no camera_info, but its features look like pixels; record it, or give "
+                     "'--camera " +
+                     sensor->name + "=FILE' to kinecal identify or calibrate");
+  }
+}
+
 /// A reflector and a tracker: two sensors without a camera, one of which always reports the same.
 void add_tracker(const Robot& robot, std::span<const Sample> samples,
                  const std::vector<const SeenSensor*>& chains, InitAnswers& answers) {
@@ -158,6 +173,7 @@ InitAnswers answers_from_samples(const Robot& robot, std::span<const Sample> all
                      "; init writes a configuration for one: give it the samples of one");
   }
   if (cameras.empty()) {
+    detail::check_no_pixels(chains);
     detail::add_tracker(robot, samples, chains, given);
   } else {
     detail::add_camera(robot, samples, *cameras.front(), chains, given);
