@@ -120,6 +120,9 @@ struct LensSearch {
   [[nodiscard]] std::optional<LensPattern> lens_of(const CameraPixels& camera,
                                                    double chance) const {
     constexpr double kLeft = 0.95, kPixels = 0.5;
+    // A shift that is larger, in parts of the radius, is none: what is left of a column that free parameters explain has
+    // the noise of the pixels at which it was computed, and so explains noise.
+    constexpr double kLarge = 0.5;
     const LinearFit& fit = fitted.fit;
     const auto samples = std::ssize(fitted.samples);
     Eigen::MatrixXd slopes(fit.residual.size(), 1 + std::ssize(kOtherShifts));
@@ -131,6 +134,7 @@ struct LensSearch {
         ErrorColumns(fit, slopes.col(0), samples).fall(Eigen::MatrixXd::Ones(samples, 1), inverse);
     const double left = std::max(0.0, own - fall.squares), farther = -fall.change(0);
     if (!(own > 0.0) || left > kLeft * kLeft * own || !(std::abs(farther) > kPixels)) return {};
+    if (std::abs(farther) > kLarge * camera.radius()) return {};
     for (std::size_t i = 0; i < kOtherShifts.size(); ++i) {
       slopes.col(static_cast<Eigen::Index>(i) + 1) = slope(camera, kOtherShifts[i]);
     }
