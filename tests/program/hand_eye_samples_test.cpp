@@ -68,7 +68,9 @@ TEST_F(HandEyeSamplesProgram, ThatTurnAboutOneAxisAreNotGood) {
     write("samples.yaml", HandEyePoses(true, 15, 6, turns).moveit_text());
     ASSERT_EQ(kinecal("init --force --poses samples.yaml --target world_marker").code, 0);
     const test::Outcome done = kinecal(std::string(kCalibrate) + "samples.yaml --force");
-    EXPECT_THAT(done.out, HasSubstr("verdict: use with care"));
+    const bool is_open = turns == FlangeTurns::none;  // in all directions, not along one axis only
+    EXPECT_THAT(done.out, HasSubstr(is_open ? "verdict: do not use" : "verdict: use with care"));
+    EXPECT_EQ(done.code, is_open ? 2 : 0);
     EXPECT_THAT(done.out + done.err, HasSubstr(turns == FlangeTurns::none
                                                    ? "record poses that turn about two axes"
                                                    : "record poses that turn about a second axis"));

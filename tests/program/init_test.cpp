@@ -265,10 +265,14 @@ TEST_F(Init, TakesSeveralReflectors) {
               HasSubstr("--target-frame: only a tracker has several reflectors"));
 }
 
-TEST_F(Init, SaysThatItsSigmaIsAGuess) {
-  const Outcome made = init("ur5e", "--target tracker --arm tool0");
-  EXPECT_THAT(made.out, HasSubstr("note: each sigma in calibrate.yaml is a guess"));
-  EXPECT_THAT(read("calibrate.yaml"), HasSubstr("0.0001 is a guess, write yours"));
+/// A guess that is far too small would make a wrong model look like many bad samples.
+TEST_F(Init, GuessesNoSigma) {
+  ASSERT_EQ(init("ur5e", "--target tracker --arm tool0").code, 0);
+  EXPECT_THAT(read("calibrate.yaml"), Not(HasSubstr("\n   sigma: ")));
+  ASSERT_EQ(
+      init("panda", "--force --target world_checkerboard --camera camera_color_optical_frame").code,
+      0);
+  EXPECT_THAT(read("calibrate.yaml"), Not(HasSubstr("\n   sigma: ")));
 }
 
 TEST_F(Init, SaysWhoReadsTheZeros) {
