@@ -99,11 +99,13 @@ inline void add_pose_hypotheses(const Config& config, std::span<const Sample> sa
                                    shift < 0 ? "before" : "after");
       shifted.correct_all = [joint, shift](std::vector<Sample>& s) {
         const std::vector<Sample> given = s;
+        const bool is_before = shift < 0;
+        if (s.empty()) return;
+        s.erase(is_before ? s.begin() : s.end() - 1);  // it has none
         for (std::size_t i = 0; i < s.size(); ++i) {
-          const std::size_t other =
-              (i + s.size() + static_cast<std::size_t>(shift + 1) - 1) % s.size();
-          const auto from = given[other].poses.find(joint);
-          if (from != given[other].poses.end()) s[i].poses[joint] = from->second;
+          const Sample& other = given[is_before ? i : i + 1];
+          const auto from = other.poses.find(joint);
+          if (from != other.poses.end()) s[i].poses[joint] = from->second;
         }
       };
     }
