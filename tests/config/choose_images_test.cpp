@@ -118,9 +118,9 @@ TEST(ChooseImages, ADistortionWithTooFewNumbersIsNamed) {
   }
   Diagnostics refused;
   choose_images(scenario.config, scenario.robot, scenario.samples, refused);
-  EXPECT_THAT(
-      refused.errors,
-      ElementsAre(HasSubstr("sensor 'eye': plumb_bob has 5 distortion coefficients, not 3")));
+  EXPECT_THAT(refused.errors,
+              ElementsAre(HasSubstr(
+                  "sensor 'eye': its lens: plumb_bob has 5 distortion coefficients, not 3")));
 }
 
 /// Without K by P, and without P by K; both are solved and neither is refused as impossible.

@@ -89,7 +89,10 @@ void choose_image(Config& config, const Robot& robot, std::span<const Sample> sa
       diagnostics.note(camera.place,
                        fmt::format("{}: image taken as rectified; {}", sensor, options.no_raw));
     } else if (!lens_named(options.lens).empty()) {
-      diagnostics.error(camera.place, fmt::format("{}: {}", sensor, options.no_raw));
+      diagnostics.error(camera.place,
+                        fmt::format("{}: its lens: {}; correct its camera_info, or write 'image: "
+                                    "rectified' in the model if its pixels are of rectified images",
+                                    sensor, options.no_raw));
     } else {  // raw pixels taken as rectified would be wrong by all of the distortion
       diagnostics.error(
           camera.place,
