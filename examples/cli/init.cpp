@@ -422,6 +422,11 @@ int init(const InitOptions& options) {
   const Configured made = configure(robot, options);
   check();  // the file may have appeared meanwhile
   write_text_file(options.output, made.text);
+  if (made.text.find("sigma: ") != std::string::npos) {
+    say("note: each sigma in {} is a guess of a residual, errors of the robot included; replace "
+        "it\n  by the noise that kinecal calibrate reports, or remove it\n",
+        options.output);
+  }
   say("wrote {}\n", options.output);
   if (options.from.empty()) write_capture(robot, made.answers, options);
   say("{}", joint_zeros_text(robot, urdf_text, made.text, options));

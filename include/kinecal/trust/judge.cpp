@@ -176,7 +176,7 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
       detail::judge_change(assessments[s], *step.problem, judgement);
     }
     detail::judge_values(step, result, assessments[s], judgement);
-    if (last) detail::judge_places(assessments[s], result.table, judgement);
+    if (last) detail::judge_places(*step.problem, assessments[s], result.table, judgement);
     if (last) detail::judge_weak(assessments[s], result.table, judgement);
     if (last) detail::judge_priors(assessments[s], result.table, judgement);
     if (last) detail::judge_pose(assessments[s], judgement);

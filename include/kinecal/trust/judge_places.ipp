@@ -3,11 +3,14 @@
 #pragma once
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "kinecal/parameters/parameter_table.hpp"
+#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/judge.hpp"
 
@@ -30,6 +33,20 @@ namespace kinecal::detail {
   Eigen::JacobiSVD<Eigen::MatrixXd> svd(moves);
   svd.setThreshold(1e-3);
   return svd.rank() == 3;
+}
+
+/// True if a sensor or target hangs on a pose that was measured, as of a flange.
+[[nodiscard]] inline bool has_measured_pose(const AnyProblem& problem) {
+  const std::vector<std::string>& own = problem.own_poses();
+  for (const MountedSensor& sensor : problem.sensors()) {
+    for (const SampledChain& chain : sensor.chains()) {
+      for (const ChainJoint& joint : chain.chain().joints) {
+        const std::string& name = joint.floating;
+        if (!name.empty() && std::find(own.begin(), own.end(), name) == own.end()) return true;
+      }
+    }
+  }
+  return false;
 }
 
 /// Numbers of a frame whose place is arbitrary must not get into the robot's files.
@@ -55,6 +72,13 @@ inline void judge_places(const Assessment& step, const ParameterTable& table,
   judgement.add(Grade::do_not_use, "these samples leave open in all directions where " + frames +
                                        " is: such numbers are arbitrary; record poses that turn "
                                        "about two axes");
+}
+
+/// The same beside a measured flange, where such a frame is what is sought.  Frames between joints may be anywhere because
+/// one makes up for another.
+inline void judge_places(const AnyProblem& problem, const Assessment& step,
+                         const ParameterTable& table, Judgement& judgement) {
+  if (has_measured_pose(problem)) judge_places(step, table, judgement);
 }
 
 }  // namespace kinecal::detail

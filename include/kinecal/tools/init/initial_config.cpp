@@ -136,12 +136,11 @@ namespace {
   text += list_to_yaml("free_frames_initial_values",
                        "Where the search starts, for frames that the URDF does not contain.",
                        plan.initial_values, true);
-  text += list_to_yaml(
-      "error_blocks",
-      "What is compared.  A feature that is off by more than 3 times the noise has no "
-      "more influence than one at 3 times, so one bad capture does not ruin the result.  "
-      "The noise is what residuals show; 'sigma: 0.002' would give it.",
-      plan.error_blocks, false);
+  text +=
+      list_to_yaml("error_blocks",
+                   "What is compared.  A feature that is more than 3 sigma off has no more "
+                   "influence than one at 3 sigma, so one bad capture does not ruin the result.",
+                   plan.error_blocks, false);
   return text;
 }
 

@@ -50,15 +50,21 @@ inline void add_hand_eye(InitPlan& plan, const InitAnswers& answers) {
   const std::string model = holder_of(answers);
   InitEntry block{"", "hand_eye", {}};
   if (answers.camera_type == "camera3d") {
-    block.why = "The camera and model '" + model + "' observe the same points, in the same order.";
+    block.why = "The camera and model '" + model +
+                "' observe the same points, in the same order.  sigma is the camera's accuracy for "
+                "one point, in metres: 0.003 is a guess, write yours.";
     block.fields = {{"type", "chain3d_to_chain3d"},
                     {"model_a", name_to_yaml(answers.camera_name)},
-                    {"model_b", name_to_yaml(model)}};
+                    {"model_b", name_to_yaml(model)},
+                    {"sigma", "0.003"}};
   } else {
-    block.why = "The camera sees the points of model '" + model + "', in the same order.";
+    block.why = "The camera sees the points of model '" + model +
+                "', in the same order.  sigma is its accuracy for one point, in "
+                "pixels: 0.5 is a guess, write yours.";
     block.fields = {{"type", "chain3d_to_camera2d"},
                     {"model_3d", name_to_yaml(model)},
-                    {"model_2d", name_to_yaml(answers.camera_name)}};
+                    {"model_2d", name_to_yaml(answers.camera_name)},
+                    {"sigma", "0.5"}};
   }
   block.fields.emplace_back("loss", "{type: huber, scale: 3.0}");
   plan.error_blocks.push_back(std::move(block));
@@ -69,7 +75,8 @@ inline void add_ground(InitPlan& plan, const InitAnswers& answers) {
                                    name_to_yaml(answers.base) +
                                    ".  Set d if the origin of this link is not on the floor (0.1 m "
                                    "above it: d: 0.1).  'alone' selects "
-                                   "the samples in which only the camera observes.",
+                                   "the samples in which only the camera observes.  sigma, the "
+                                   "camera's accuracy for one point in metres, is a guess.",
                                "ground_plane",
                                {{"type", "chain3d_to_plane"},
                                 {"model", name_to_yaml(answers.camera_name)},
@@ -78,6 +85,7 @@ inline void add_ground(InitPlan& plan, const InitAnswers& answers) {
                                 {"c", "1.0"},
                                 {"d", "0.0"},
                                 {"samples", "alone"},
+                                {"sigma", "0.003"},
                                 {"loss", "{type: huber, scale: 3.0}"}}});
 }
 

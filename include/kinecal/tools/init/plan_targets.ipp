@@ -133,12 +133,20 @@ namespace kinecal::detail {
                     "Zeros are no guess: kinecal searches for the tracker.  Should it not find it, "
                     "measure where it stands and how it is turned.");
   for (const std::string& frame : reflectors) add_initial_value(plan, frame, "");
-  plan.error_blocks.push_back({"Both observe the same point.",
-                               "measured",
-                               {{"type", "chain3d_to_chain3d"},
-                                {"model_a", name_to_yaml(holder_of(answers))},
-                                {"model_b", name_to_yaml(tracker_of(answers))},
-                                {"loss", "{type: huber, scale: 3.0}"}}});
+  InitEntry measured{
+      "Both observe the same point.  The noise is what residuals show; 'sigma' would give it.",
+      "measured",
+      {{"type", "chain3d_to_chain3d"},
+       {"model_a", name_to_yaml(holder_of(answers))},
+       {"model_b", name_to_yaml(tracker_of(answers))}}};
+  if (!determined) {  // the prior below is weighed against it
+    measured.why =
+        "Both observe the same point.  sigma combines the accuracy of the tracker and the "
+        "repeatability of the robot, in metres: 0.0001 is a guess, write yours.";
+    measured.fields.emplace_back("sigma", "0.0001");
+  }
+  measured.fields.emplace_back("loss", "{type: huber, scale: 3.0}");
+  plan.error_blocks.push_back(std::move(measured));
   if (!determined) {
     keep_near_zero(plan, reflector,
                    "The arm does not turn about two axes, so samples cannot distinguish all of the "
