@@ -323,7 +323,9 @@ std::vector<WrongInput> panda_inputs() {
       {"joints_4_and_6_exchanged", kPanda, exchanged("panda_joint4", "panda_joint6"), kAtOnce,
        "'panda_joint4' and 'panda_joint6'"},
       {"joints_2_and_7_exchanged", kPanda, exchanged("panda_joint2", "panda_joint7"), kByVerdict},
-      {"joint_4_negated", kPanda, position_times("panda_joint4", -1.0), kAtOnce, "the other sign"},
+      // By the limits, a half turn explains as much.
+      {"joint_4_negated", kPanda, position_times("panda_joint4", -1.0), kByVerdict,
+       "likely cause: with the positions of 'panda_joint4' negated"},
       {"joint_5_negated", kPanda, position_times("panda_joint5", -1.0), kByVerdict},
       {"urdf_in_millimetres", kPanda, origins_times("xyz", 1e3), kAtOnce, "millimetres"},
       {"urdf_in_degrees", kPanda, origins_times("rpy", kDegrees), kAtOnce, "in degrees?"},
@@ -424,6 +426,7 @@ TEST_P(WrongInputs, AreNotCalibrated) {
   if (wrong.when == kByVerdict && result.code != 1) {
     EXPECT_EQ(result.code, 2) << result.out << result.err;
     EXPECT_THAT(result.out, testing::StartsWith("verdict: do not use\n"));
+    EXPECT_THAT(result.out, HasSubstr(wrong.message));
     return;
   }
   EXPECT_EQ(result.code, 1) << result.out << result.err;
