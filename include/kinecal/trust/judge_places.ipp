@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string>
-#include <vector>
 
 #include "kinecal/parameters/parameter_table.hpp"
-#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/trust/assess.hpp"
+#include "kinecal/trust/joint_effects.ipp"
 #include "kinecal/trust/judge.hpp"
 
 namespace kinecal::detail {
@@ -37,16 +37,10 @@ namespace kinecal::detail {
 
 /// True if a sensor or target hangs on a pose that was measured, as of a flange.
 [[nodiscard]] inline bool has_measured_pose(const AnyProblem& problem) {
-  const std::vector<std::string>& own = problem.own_poses();
-  for (const MountedSensor& sensor : problem.sensors()) {
-    for (const SampledChain& chain : sensor.chains()) {
-      for (const ChainJoint& joint : chain.chain().joints) {
-        const std::string& name = joint.floating;
-        if (!name.empty() && std::find(own.begin(), own.end(), name) == own.end()) return true;
-      }
-    }
-  }
-  return false;
+  const std::map<std::string, double> joints = repeatable_joints(problem);
+  return std::any_of(joints.begin(), joints.end(), [](const auto& joint) {
+    return floating_coordinate(joint.first).has_value();
+  });
 }
 
 /// Numbers of a frame whose place is arbitrary must not get into the robot's files.

@@ -82,17 +82,8 @@ namespace {
 /// @returns  (coordinates x samples)
 [[nodiscard]] Eigen::MatrixXd places_of(const AnyProblem& problem,
                                         std::span<const Sample> samples) {
-  constexpr double kRadians = 1e-3, kMetres = 2e-4;  // of measured poses
   constexpr double kSeen = 0.01;  // rad, and parts of the distance, of a target that nobody moved
-  std::map<std::string, double> joints = repeatable_joints(problem);
-  std::vector<std::string> measured;
-  for (const auto& [name, repeats] : joints) {
-    const bool is_measured =
-        std::any_of(samples.begin(), samples.end(),
-                    [&, of = name](const auto& s) { return s.poses.contains(of); });
-    if (is_measured) measured.push_back(name);
-  }
-  for (const std::string& name : measured) joints.erase(name);
+  const std::map<std::string, double> joints = repeatable_joints(problem);
   const auto& own = problem.poses_of_samples();
   double distance = 0.0;  // mean, of targets
   for (const auto& poses : own) {
@@ -103,12 +94,6 @@ namespace {
   Eigen::MatrixXd places(0, std::ssize(samples));
   for (std::size_t s = 0; s < samples.size(); ++s) {
     Eigen::VectorXd at = positions_of(samples[s], joints);
-    for (const std::string& name : measured) {
-      const auto pose = samples[s].poses.find(name);
-      append(positions_of(pose == samples[s].poses.end() ? Pose<double>{} : pose->second, kRadians,
-                          kMetres),
-             at);
-    }
     if (s < own.size()) {
       for (const Pose<double>& pose : own[s])
         append(positions_of(pose, kSeen, kSeen * distance), at);

@@ -68,27 +68,24 @@ inline void add_pose_hypotheses(const Config& config, std::span<const Sample> sa
                                 std::vector<Hypothesis>& all) {
   for (const std::string& joint : measured_poses(config, samples)) {
     const auto add = [&](const std::string& undone, const auto& change) {
-      all.push_back({fmt::format("{} in the poses of '{}'", undone, joint), [=](Sample& s) {
+      all.push_back({undone, [=](Sample& s) {
                        const auto at = s.poses.find(joint);
                        if (at != s.poses.end()) at->second = change(at->second);
                      }});
     };
-    all.push_back(
-        {fmt::format("with the poses of '{}' inverted, as if they were those of the base in the "
-                     "flange (init --inverse), or the target on the other side",
-                     joint),
-         [joint](Sample& s) {
-           const auto at = s.poses.find(joint);
-           if (at != s.poses.end()) at->second = at->second.inverse();
-         }});
+    const std::string in = " in the poses of '" + joint + "'";
+    add(fmt::format("with the poses of '{}' inverted, as if they were those of the base in the "
+                    "flange (init --inverse), or the target on the other side",
+                    joint),
+        [](const Pose<double>& pose) { return pose.inverse(); });
     for (const auto& [undone, reread] : rereadings()) {
       const Reread of = reread;  // lambdas of C++20 capture no structured bindings in clang 14
-      add(undone, [of](const Pose<double>& pose) {
+      add(undone + in, [of](const Pose<double>& pose) {
         return Pose<double>{of(pose.rotation), pose.translation};
       });
     }
     for (const double factor : {1e3, 1e2, 1e1, 1e-1, 1e-2, 1e-3}) {
-      add(fmt::format("with positions multiplied by {}", factor),
+      add(fmt::format("with positions multiplied by {}{}", factor, in),
           [factor](const Pose<double>& pose) {
             return Pose<double>{pose.rotation, factor * pose.translation};
           });
