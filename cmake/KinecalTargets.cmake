@@ -2,7 +2,7 @@
 #   kinecal::core     text ... crate               Eigen, threads
 #   kinecal::capture  capture                      core; optional: apriltag, OpenCV
 #   kinecal::solve    solve, trust                 core, Ceres, Boost's headers
-#   kinecal::io       study, files ... tools       capture, solve, urdfdom, libyaml, pugixml, fmt, zlib,
+#   kinecal::io       study, files ... procedure       capture, solve, urdfdom, libyaml, pugixml, fmt, zlib,
 #                                                    nlohmann-json, libcrypto; optional libraries:
 #                                                    KinecalOptional.cmake
 #   kinecal::kinecal  all of them
@@ -154,7 +154,7 @@ kinecal_add_library(solve UNIT 50
   LINK kinecal_core Ceres::ceres
   PRIVATE_LINK Boost::headers)
 kinecal_add_library(io UNIT 33 OPTIMIZE -O2
-  FOLDERS study files config robots report tools
+  FOLDERS study files config robots report tools procedure
   LINK kinecal_capture kinecal_solve nlohmann_json::nlohmann_json
   PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB
                OpenSSL::Crypto Boost::headers)

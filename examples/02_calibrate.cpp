@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "kinecal/errors.hpp"
-#include "kinecal/trust.hpp"
+#include "kinecal/procedure.hpp"
 #include "robots/mobile_manipulator.hpp"
 #include "true_robot.hpp"
 
@@ -65,6 +65,5 @@ int main() {
   // 0.1 mm of noise at 0.3 m and more, averaged over 24 samples.
   const bool found = std::abs(shoulder + 2.0 * kDegree) < 1e-4 &&
                      std::abs(elbow - 1.5 * kDegree) < 2e-4 && std::abs(length - 0.004) < 1e-4;
-  return judged.judgement.verdict != Grade::do_not_use && judged.left_out.size() == 1 && found ? 0
-                                                                                               : 1;
+  return judged.is_usable() && judged.left_out.size() == 1 && found ? 0 : 1;
 }

@@ -12,15 +12,12 @@
 #include <utility>
 
 #include "commands.hpp"
-#include "fit.hpp"
 #include "input.hpp"
-#include "kinecal/config/doubts/judge_causes.hpp"
+#include "kinecal/procedure/calibrated_files.hpp"
 #include "kinecal/report.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/text/shell_word.hpp"
-#include "kinecal/tools/identify/would_help.hpp"
-#include "kinecal/trust/speed_limit.hpp"
 #include "output.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
@@ -58,16 +55,16 @@ bool same_file(const std::filesystem::path& one, const std::filesystem::path& ot
 
 /// Copies of the URDF and of the configuration; an input that has the name of its copy, in the same
 /// folder, is that copy.
-std::vector<OutputFile> copies(const ResultOptions& options, const Input& input) {
+std::vector<OutputFile> copies(const ResultOptions& options, const InputTexts& texts) {
   const std::filesystem::path folder(options.output);
   std::vector<OutputFile> files;
   if (!same_file(folder / kOriginalUrdf, options.urdf)) {
-    files.push_back({kOriginalUrdf, input.urdf_text});
+    files.push_back({kOriginalUrdf, texts.urdf_text});
   }
-  if (!input.found_config.empty()) {
-    files.push_back({kConfigCopy, input.found_config});
+  if (!texts.found_config.empty()) {
+    files.push_back({kConfigCopy, texts.found_config});
   } else if (!same_file(folder / kConfigCopy, options.config)) {
-    files.push_back({kConfigCopy, input.config_text});
+    files.push_back({kConfigCopy, texts.config_text});
   }
   return files;
 }
@@ -121,9 +118,9 @@ ResultFileOptions file_options(const ResultOptions& options, const Robot& robot)
   return files;
 }
 
-std::vector<OutputFile> with_copies(const ResultOptions& options, const Input& input,
+std::vector<OutputFile> with_copies(const ResultOptions& options, const InputTexts& texts,
                                     std::vector<OutputFile> files) {
-  for (OutputFile& copy : copies(options, input)) files.push_back(std::move(copy));
+  for (OutputFile& copy : copies(options, texts)) files.push_back(std::move(copy));
   check_targets(options, options.output, files);
   return files;
 }
@@ -131,10 +128,10 @@ std::vector<OutputFile> with_copies(const ResultOptions& options, const Input& i
 namespace {
 
 /// Says what does not read the zeros that were written, if the URDF had none of this kind before.
-std::string offsets_text(const ResultOptions& options, const Input& input,
+std::string offsets_text(const ResultOptions& options, const CalibrationSetup& setup,
                          const std::vector<JointPatch>& patches) {
   if (!options.offsets.empty() ||
-      !goes_into_rising(input.urdf_text, input.urdf, input.robot, patches)) {
+      !goes_into_rising(setup.urdf_text, setup.urdf, setup.robot, patches)) {
     return "";
   }
   return "\nzeros of joints are in <calibration rising> of the URDF, which robot_state_publisher, "
@@ -159,9 +156,9 @@ SolveOptions solve_options(const CalibrateOptions& options) {
 }
 
 /// The inputs as `kinecal plan` takes them; empty if it needs more: a URDF, or intrinsics.
-std::string inputs_of_plan(const CalibrateOptions& options, const Input& input) {
+std::string inputs_of_plan(const CalibrateOptions& options, const InputTexts& texts) {
   InputOptions of = options;
-  if (input.is_searched && !options.output.empty()) {
+  if (!texts.found_config.empty() && !options.output.empty()) {
     of.config = (std::filesystem::path(options.output) / kConfigCopy).string();
   }
   const bool is_complete = !of.urdf.empty() && !of.config.empty() && of.cameras.empty();
@@ -182,57 +179,30 @@ std::optional<OutputFolder> output_folder(const CalibrateOptions& options) {
   return std::optional<OutputFolder>(std::in_place, options.output);
 }
 
-/// How fast is still good, if the configuration has a lag.
-std::vector<std::string> how_fast(const Fit& fitted) {
-  const CalibrationResult& result = fitted.findings.result;
-  if (!result.converged) return {};
-  const CalibrationStep& last = fitted.calibration.steps.back();
-  const Eigen::VectorXd values = result.table.values();
-  std::vector<std::string> sentences;
-  for (const SpeedLimit& limit :
-       speed_limits(*last.problem, last.free,
-                    {values.data(), static_cast<std::size_t>(values.size())}, fitted.samples)) {
-    sentences.push_back(limit.text());
-  }
-  return sentences;
-}
-
-/// Calibrates and judges, with a line of progress on a terminal; nothing if nothing is free and the samples support nothing.
-std::optional<Fit> fit_and_judge(const CalibrateOptions& options, Input& input) {
+/// Calibrates and judges, with a line of progress on a terminal.
+CalibratedRobot fit_and_judge(const CalibrateOptions& options, PreparedCalibration prepared,
+                              InputTexts& texts) {
   std::optional<ProgressLine> line(std::in_place);
-  SolveOptions solving = solve_options(options);
-  solving.meter = line->meter();
-  Fit fitted;
-  if (input.is_searched) {
-    SearchedFit found = search_and_fit(input, options, false, progress_line(), solving);
-    end_progress_line();
-    print(input.diagnostics);
-    if (!options.manner.quiet && !options.manner.json) {
-      show(search_summary(found, input) + "\n", options.manner);
-    }
-    if (found.is_empty()) return std::nullopt;
-    input.found_config = std::move(found.config);
-    fitted = std::move(found.fit);
-  } else {
-    fitted = fit(input, std::move(input.calibration), options, progress_line(), solving);
-  }
+  CalibrationOptions calibrating = calibration_options(options);
+  calibrating.solving = solve_options(options);
+  calibrating.solving.meter = line->meter();
+  calibrating.folds = options.folds;
+  calibrating.keep_outliers = options.keep_outliers;
+  calibrating.progress = progress_line();
+  CalibratedRobot calibrated = calibrate_robot(std::move(prepared), calibrating);
   line.reset();
   end_progress_line();
-  judge_causes(
-      {input.config, input.robot, input.urdf_text, input.urdf, fitted.samples, fitted.calibration},
-      fitted.findings);
-  if (!input.is_searched) {  // else it is named already
-    const WouldHelp help = would_help(input.config, input.robot, fitted.samples, fitted.calibration,
-                                      fitted.findings.result);
-    fitted.findings.helps = help.sentences;
-    fitted.findings.helps_leave = help.left;
-    judge_help(help, fitted.findings.judgement);
+  if (calibrated.robot_search) {
+    texts.found_config = found_config(calibrated);
+    print(calibrated.setup.diagnostics);
+    if (!options.manner.quiet && !options.manner.json) {
+      show(search_summary(calibrated) + "\n", options.manner);
+    }
   }
-  fitted.findings.speeds = how_fast(fitted);
-  fitted.findings.call = {options.command, inputs_of_plan(options, input),
-                          options.dry_run ? "" : options.output, KINECAL_VERSION,
-                          read_files(options, input)};
-  return fitted;
+  calibrated.call = {options.command, inputs_of_plan(options, texts),
+                     options.dry_run ? "" : options.output, KINECAL_VERSION,
+                     read_files(options, texts)};
+  return calibrated;
 }
 
 void show_findings(const Findings& findings, const Manner& manner) {
@@ -270,50 +240,51 @@ int calibrate(const CalibrateOptions& options) {
   set_progress(!options.manner.quiet);
   const Clock::time_point start = Clock::now();
   std::optional<OutputFolder> folder = output_folder(options);
-  Input input = read_input(options);
-  print(input.diagnostics);
-  if (!input.diagnostics.errors.empty()) return kBadInput;
-  if (folder) check_robot_files(options, input);
+  InputTexts texts;
+  PreparedCalibration prepared = read_input(options, texts);
+  print(prepared.diagnostics);
+  if (!prepared.diagnostics.errors.empty()) return kBadInput;
+  if (folder) check_robot_files(options, prepared.robot, texts);
+  prepared.diagnostics.notes.clear();  // they are printed
+  prepared.diagnostics.warnings.clear();
   const double reading = seconds_since(start);
 
-  const std::optional<Fit> fit_of_input = fit_and_judge(options, input);
-  if (!fit_of_input) {
+  const CalibratedRobot calibrated = fit_and_judge(options, std::move(prepared), texts);
+  if (found_nothing(calibrated)) {
     say(stderr,
         "error: nothing is free, and these samples support no parameter: no results written\n");
     return kNotUsable;
   }
-  const Fit& fitted = *fit_of_input;
   const double fitting = seconds_since(start) - reading;
-  const Findings& findings = fitted.findings;
+  const Findings& findings = calibrated;
   const Manner& manner = options.manner;
   show_findings(findings, manner);
 
-  write_reports(options, input, fitted);
-  if (!options.scene.empty()) write_scene_file(options.scene, input, fitted, options.mesh_paths);
-  const bool is_usable = findings.judgement.verdict != Grade::do_not_use;
-  const ResultFileOptions how = file_options(options, input.robot);
+  write_reports(options, texts, calibrated);
+  if (!options.scene.empty()) write_scene_file(options.scene, calibrated, options.mesh_paths);
+  const Robot& robot = calibrated.setup.robot;
+  const ResultFileOptions how = file_options(options, robot);
   std::vector<OutputFile> files;
-  if (folder && is_usable) {
-    files = with_copies(options, input,
-                        output_files(input.robot, {input.urdf, input.urdf_text}, fitted.calibration,
-                                     findings, fitted.samples, how));
+  if (folder && calibrated.is_usable()) {
+    files = with_copies(options, texts, calibrated_files(calibrated, how));
     const RobotFiles others =
-        robot_files(options, input, findings.result.table, files.front().content);
+        robot_files(options, robot, texts, findings.result.table, files.front().content);
     folder->write(files);
     write(others);
   }
   const double writing = seconds_since(start) - reading - fitting;
   if (!manner.json && !manner.quiet) {
     if (!files.empty()) {
-      show(offsets_text(options, input,
-                        joint_patches(input.robot, findings.result.table, how.in_servos)),
+      show(offsets_text(options, calibrated.setup,
+                        joint_patches(robot, findings.result.table, how.in_servos)),
            manner);
     }
-    show("\n" + times_text(input.samples.size(), findings.result, reading, fitting, writing),
+    show("\n" + times_text(calibrated.setup.samples.size(), findings.result, reading, fitting,
+                           writing),
          manner);
   }
   if (!manner.json) show(last_line(findings, options, files.size()), manner);
-  if (is_usable) return kDone;
+  if (calibrated.is_usable()) return kDone;
   say(stderr, "error: calibration of step '{}' failed, no results written: {}\n",
       findings.result.steps.empty() ? "" : findings.result.steps.back().name,
       findings.judgement.reasons.front());

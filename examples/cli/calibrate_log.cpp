@@ -1,5 +1,7 @@
 // kinecal calibrate-log: recordings that do not fit into memory, file after file.
 // SPDX-License-Identifier: Apache-2.0
+#include "kinecal/procedure/calibrate_log.hpp"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -15,19 +17,16 @@
 
 #include "checkpoints.hpp"
 #include "commands.hpp"
-#include "fit.hpp"
 #include "input.hpp"
 #include "interruption.hpp"
-#include "kinecal/config/choose_lenses.hpp"
-#include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/checksum.hpp"
+#include "kinecal/procedure/calibrated_files.hpp"
 #include "kinecal/report.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/tools/cameras/later_cameras.hpp"
-#include "kinecal/trust/judge_shards.hpp"
 #include "output.hpp"
 #include "processes.hpp"
+#include "report.hpp"
 #include "robot_files.hpp"
 #include "terminal.hpp"
 
@@ -35,14 +34,6 @@ namespace kinecal::cli {
 namespace {
 
 constexpr const char* kSums = "sums";  ///< folder of checkpoints, in that of the result
-
-/// What is known of all files before the work begins.
-struct LogContent {
-  std::int64_t samples = 0;
-  std::vector<std::int64_t> residuals;  ///< of each step, priors once per sample
-  std::vector<FreeSet> free;            ///< of each step: what any file determines
-  int doubts = 0;                       ///< about the files after the first
-};
 
 /// Size and some places of a file, or of all files of a folder: enough to see that it is another one, without
 /// reading it all.
@@ -106,69 +97,58 @@ std::vector<double> take(std::string_view& bytes) {
 /// One run of one process.
 class LogRun {
  public:
-  LogRun(const ResultOptions& options, const Processes& processes)
+  LogRun(const LogOptions& options, const Processes& processes)
       : options_(options), processes_(processes) {
-    processes_.alike([&] { read_first(); });
+    processes_.alike([&] { read_texts(); });
     processes_.require_same(identity_of_input(false), "{one} reads other input files than {first}");
     checkpoints_.emplace(std::filesystem::path(options.output) / kSums, identity_of_input(true));
+  }
+
+  /// Solves, assesses and judges.
+  [[nodiscard]] CalibratedRobot calibrate() {
+    CalibrationOptions calibrating = calibration_options(options_);
+    calibrating.solving.threads = options_.threads;
+    calibrating.draw = options_.draw;
+    PreparedLog log;
+    processes_.alike([&] {
+      log = prepare_log(std::move(input_.setup), recorded_log(), calibrating);
+      print_or_throw(log.draw.diagnostics);
+      check_robot_files(options_, log.draw.robot, input_.texts);
+    });
+    samples_ = log.samples;
     try {
-      content_ = check_files();
+      return kinecal::calibrate_log(std::move(log), calibrating);
     } catch (const InputError&) {
       if (processes_.size() == 1) checkpoints_->forget_new();
       throw;
     }
   }
 
-  /// Solves, assesses and judges.
-  [[nodiscard]] Findings calibrate() {
-    ShardedCalibration sharded{std::move(first_.calibration),
-                               first_.samples,
-                               options_.samples,
-                               content_.samples,
-                               content_.residuals,
-                               content_.free,
-                               [&](int file) { return samples_of(file); },
-                               [&](const std::string& what, const NumbersOfShard& numbers_of) {
-                                 return exchange(what, numbers_of);
-                               }};
-    ProcedureOptions procedure;
-    procedure.solving.threads = options_.threads;
-    procedure.doubts = first_.diagnostics.doubts;
-    procedure.refutable = first_.diagnostics.refutable;
-    if (content_.doubts > 0) {
-      procedure.doubts.push_back(
-          fmt::format("{} about other files, printed above",
-                      counted(static_cast<std::size_t>(content_.doubts), "doubt")));
-    }
-    JudgedResult judged = calibrate_and_judge(sharded, procedure);
-    first_.calibration = std::move(sharded.first);
-    const std::string why =
-        impossible_camera(first_.calibration, judged.result.table, first_.samples);
-    if (judged.result.converged && !why.empty()) judged.judgement.add(Grade::do_not_use, why);
-    Findings findings =
-        findings_of(first_.robot, first_.calibration, std::move(judged), first_.samples);
-    findings.images = images_of(first_.config);
-    findings.lenses = lenses_of(first_.config);
-    findings.has_own_poses = !first_.config.per_sample.empty();
-    return findings;
-  }
-
-  [[nodiscard]] const Input& first() const { return first_; }
-  [[nodiscard]] const LogContent& content() const { return content_; }
+  [[nodiscard]] const InputTexts& texts() const { return input_.texts; }
+  /// Samples of all files.
+  [[nodiscard]] std::int64_t samples() const { return samples_; }
   /// When there is a verdict.
   void forget_checkpoints() { checkpoints_->forget_all(); }
 
  private:
   [[nodiscard]] int files() const { return static_cast<int>(options_.samples.size()); }
-  [[nodiscard]] int steps() const { return static_cast<int>(first_.config.steps.size()); }
 
-  void read_first() {
+  void read_texts() {
     if (options_.output.empty()) throw InputError("--output is required");
     check_files_differ(options_.samples);
     check_results(options_);
-    first_ = read(0);
-    print_or_throw(first_.diagnostics);
-    check_robot_files(options_, first_);
+    check_reports(options_);
+    input_ = read_files(options_, false);
+    print_or_throw(input_.diagnostics);
+  }
+
+  [[nodiscard]] RecordedLog recorded_log() {
+    return {.names = options_.samples,
+            .read = [this](int file) { return samples_of(file); },
+            .exchange =
+                [this](const std::string& what, const NumbersOfShard& numbers_of) {
+                  return exchange(what, numbers_of);
+                }};
   }
 
   /// Numbers of all files: each process computes those of every n-th one, unless they are on disk.
@@ -180,9 +160,7 @@ class LogRun {
                             "differ, so they cannot share one calibration");
     std::string own;
     for (int file = processes_.rank(); file < files(); file += processes_.size()) {
-      if (Interruption::is_asked()) {
-        throw Interrupted(options_.output + ": run the same command again to go on");
-      }
+      check_interruption();
       std::optional<std::vector<double>> numbers = checkpoints_->find(what, file);
       if (!numbers) {
         numbers = numbers_of(file);
@@ -201,19 +179,30 @@ class LogRun {
     return all;
   }
 
-  /// A file with all that is checked of it.
-  [[nodiscard]] Input read(int file) const {
-    InputOptions one = options_;
-    one.samples = {options_.samples[static_cast<std::size_t>(file)]};
-    one.is_part = files() > 1;
-    if (file > 0) one.urdf_text = first_.urdf_text;  // bags that were split have it in the first
-    return read_input(one, file > 0 ? &first_ : nullptr);
+  void check_interruption() const {
+    if (!Interruption::is_asked()) return;
+    throw Interrupted(options_.output + ": run the same command again to go on");
+  }
+
+  /// The samples of a file, with the cameras of the options; what its reader notes is printed once.
+  [[nodiscard]] std::vector<Sample> samples_of(int file) {
+    check_interruption();
+    Diagnostics diagnostics;
+    std::vector<Sample> samples =
+        read_recordings({options_.samples[static_cast<std::size_t>(file)]}, diagnostics).samples;
+    for (const std::string& camera : options_.cameras) set_camera(samples, camera, diagnostics);
+    if (!is_read_.insert(file).second || processes_.rank() > 0) {
+      diagnostics.throw_if_errors();
+    } else {
+      print_or_throw(diagnostics);
+    }
+    return samples;
   }
 
   /// What makes sums those of this calibration.
   /// @param when  also when files were changed, which differs between nodes
   [[nodiscard]] std::string identity_of_input(bool when) const {
-    std::string text = KINECAL_VERSION + first_.urdf_text + first_.config_text;
+    std::string text = KINECAL_VERSION + input_.texts.urdf_text + input_.texts.config_text;
     text += fmt::format(" {}", static_cast<int>(options_.recorded));
     for (const std::string& joint : options_.hold) text += '\n' + joint;
     for (const std::string& camera : options_.cameras) {
@@ -224,142 +213,58 @@ class LogRun {
     return sha256_text(text);
   }
 
-  /// Samples, doubts, and for each step the residuals and the parameters that they determine.
-  [[nodiscard]] std::vector<double> numbers_of_file(int file) const {
-    std::optional<Input> other;
-    if (file > 0) {
-      other = read(file);
-      print_or_throw(other->diagnostics);
-      check_images(*other, file);
-    }
-    const Input& input = other ? *other : first_;
-    std::vector<double> numbers = {static_cast<double>(input.samples.size()),
-                                   static_cast<double>(input.diagnostics.doubts.size())};
-    for (const CalibrationStep& step : input.calibration.steps) {
-      numbers.push_back(step.problem->num_residuals());
-      std::vector<double> freed(static_cast<std::size_t>(step.problem->table().size()), 0.0);
-      for (const int p : step.free.parameters()) freed[static_cast<std::size_t>(p)] = 1.0;
-      numbers.insert(numbers.end(), freed.begin(), freed.end());
-    }
-    return numbers;
-  }
-
-  /// Images are raw or rectified in all files.
-  void check_images(const Input& other, int file) const {
-    const auto here = detail::models_of(other.config), there = detail::models_of(first_.config);
-    for (std::size_t i = 0; i < std::min(here.size(), there.size()); ++i) {
-      if (here[i].image == there[i].image) continue;
-      throw InputError(fmt::format(
-          "{}: pixels of '{}' are those of {} images, but in {} of {} ones; write 'image' in the "
-          "model",
-          options_.samples[static_cast<std::size_t>(file)], here[i].name,
-          here[i].image == ImageKind::raw ? "raw" : "rectified", options_.samples.front(),
-          there[i].image == ImageKind::raw ? "raw" : "rectified"));
-    }
-  }
-
-  [[nodiscard]] LogContent check_files() {
-    const auto all = exchange("files", [&](int file) { return numbers_of_file(file); });
-    LogContent content;
-    const int size = first_.calibration.table.size();
-    for (const std::vector<double>& of : all) {
-      content.samples += static_cast<std::int64_t>(of[0]);
-      if (&of != &all.front()) content.doubts += static_cast<int>(of[1]);
-    }
-    for (int step = 0; step < steps(); ++step) {
-      const std::size_t at =
-          2 + static_cast<std::size_t>(step) * (1 + static_cast<std::size_t>(size));
-      const int priors = Prior::kRows * static_cast<int>(problem_of(step).priors().size());
-      std::int64_t residuals = priors * content.samples;
-      // In the order of the configuration; then what only other files determine.
-      std::vector<int> free =
-          first_.calibration.steps[static_cast<std::size_t>(step)].free.parameters();
-      for (const std::vector<double>& of : all) {
-        residuals += static_cast<std::int64_t>(of[at]) - priors;
-        for (int p = 0; p < size; ++p) {
-          const bool freed = of[at + 1 + static_cast<std::size_t>(p)] != 0.0;
-          if (freed && std::find(free.begin(), free.end(), p) == free.end()) free.push_back(p);
-        }
-      }
-      content.residuals.push_back(residuals);
-      content.free.emplace_back(std::move(free), size);
-    }
-    return content;
-  }
-
-  [[nodiscard]] const AnyProblem& problem_of(int step) const {
-    return *first_.calibration.steps[static_cast<std::size_t>(step)].problem;
-  }
-
-  [[nodiscard]] std::vector<Sample> samples_of(int file) const {
-    Diagnostics diagnostics;
-    std::vector<Sample> samples =
-        read_recordings({options_.samples[static_cast<std::size_t>(file)]}, diagnostics).samples;
-    for (const std::string& camera : options_.cameras) set_camera(samples, camera, diagnostics);
-    if (options_.recorded == Recorded::before) {
-      add_rising(rising_of(first_.urdf_text, first_.urdf), samples);
-    }
-    if (first_.decides_cameras) {
-      (void)prepare_later_cameras(first_.robot, first_.config, first_.samples, samples,
-                                  diagnostics);
-    } else {
-      Config same = first_.config;
-      choose_lenses(same, samples, diagnostics);  // a given lens replaces that of camera_info
-    }
-    diagnostics.throw_if_errors();
-    return samples;
-  }
-
-  const ResultOptions& options_;
+  const LogOptions& options_;
   const Processes& processes_;
-  Input first_;
+  Input input_;
   std::optional<Checkpoints> checkpoints_;
-  LogContent content_;
+  std::set<int> is_read_;  ///< files that were read once
+  std::int64_t samples_ = 0;
 };
 
 /// Prints and writes what the first process has found.
-int report(const ResultOptions& options, LogRun& run, const Findings& findings) {
+int report(const LogOptions& options, LogRun& run, CalibratedRobot& calibrated) {
+  Findings& findings = calibrated;
+  findings.call = {options.command, input_options(options), options.output, KINECAL_VERSION,
+                   read_files(options, run.texts())};
   say("{}", summary_text(findings));
   std::fflush(stdout);
-  const CalibrationResult& result = findings.result;
-  if (findings.judgement.verdict == Grade::do_not_use) {
+  write_reports(options, run.texts(), calibrated);
+  if (!calibrated.is_usable()) {
     run.forget_checkpoints();
     say(stderr, "error: calibration of step '{}' failed, no results written: {}\n",
-        result.steps.empty() ? "" : result.steps.back().name, findings.judgement.reasons.front());
+        findings.result.steps.empty() ? "" : findings.result.steps.back().name,
+        findings.judgement.reasons.front());
     return kNotUsable;
   }
-  const Input& first = run.first();
-  std::vector<OutputFile> all =
-      output_files(first.robot, {first.urdf, first.urdf_text}, first.calibration, findings,
-                   first.samples, file_options(options, first.robot));
+  const Robot& robot = calibrated.setup.robot;
+  std::vector<OutputFile> all = calibrated_files(calibrated, file_options(options, robot));
   std::erase_if(all, [](const OutputFile& file) { return file.name == "residuals.csv"; });
-  const std::string& calibrated = all.front().content;
-  const RobotFiles others = robot_files(options, first, result.table, calibrated);
+  const RobotFiles others =
+      robot_files(options, robot, run.texts(), findings.result.table, all.front().content);
   OutputFolder folder(options.output);
-  write(folder, with_copies(options, first, std::move(all)));
+  write(folder, with_copies(options, run.texts(), std::move(all)));
   write(others);
   run.forget_checkpoints();
   return kDone;
 }
 
 /// The calibration of one process, or of several.
-int calibrate_log_in(const Processes& processes, const ResultOptions& options) {
+int calibrate_log_in(const Processes& processes, const LogOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const Interruption interruption;
   LogRun run(options, processes);
-  const Findings findings = run.calibrate();
+  CalibratedRobot calibrated = run.calibrate();
   if (processes.rank() > 0) return kDone;
-  const int code = report(options, run, findings);
+  const int code = report(options, run, calibrated);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  say("{} of {}, {:.3f} s: {}\n",
-      counted(static_cast<std::size_t>(run.content().samples), "sample"),
-      counted(options.samples.size(), "file"), taken.count(), solving_text(findings.result));
+  say("{} of {}, {:.3f} s: {}\n", counted(static_cast<std::size_t>(run.samples()), "sample"),
+      counted(options.samples.size(), "file"), taken.count(), solving_text(calibrated.result));
   return code;
 }
 
 }  // namespace
 
-int calibrate_log(const ResultOptions& options) {
+int calibrate_log(const LogOptions& options) {
   const Processes processes;
   return processes.run([&] { return calibrate_log_in(processes, options); });
 }

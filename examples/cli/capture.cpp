@@ -17,14 +17,14 @@
 #include "interruption.hpp"
 #include "kinecal/capture/find_leds.hpp"
 #include "kinecal/capture/session.hpp"
-#include "kinecal/config/capture/session_end.hpp"
-#include "kinecal/config/capture/session_follower.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/recordings/write_recording.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/files/urdf/velocity_limits.hpp"
+#include "kinecal/procedure/session_end.hpp"
+#include "kinecal/procedure/session_follower.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/tools/cameras/next_photographs.hpp"
 #include "kinecal/tools/detect/detect.hpp"
@@ -90,12 +90,13 @@ SessionFinder finder_of(const CaptureFinder& finder, const Robot& robot, AnyRobo
 /// Follows the session and says when it is enough.
 class Follower {
  public:
-  Follower(const CaptureOptions& options, const Robot& robot) : robot_(robot) {
+  Follower(const CaptureOptions& options, const Robot& robot, const std::string& urdf)
+      : robot_(robot) {
     Diagnostics diagnostics;
     Config config = read_config(options.calibrate, diagnostics);
     print_or_throw(diagnostics);
     if (!options.until.empty()) until_ = parse_accuracy(options.until);
-    follower_.emplace(std::move(config), robot, until_ ? until_->frame : "");
+    follower_.emplace(std::move(config), robot, until_ ? until_->frame : "", urdf);
   }
 
   /// Takes a sample; prints what it tells on one line.
@@ -123,7 +124,7 @@ class Follower {
 
   [[nodiscard]] bool enough() const { return enough_; }
   /// The calibration of all samples so far.
-  [[nodiscard]] SessionCalibration calibrate_all() const { return follower_->calibrate_all(); }
+  [[nodiscard]] CalibratedRobot calibrate_all() const { return follower_->calibrate_all(); }
 
  private:
   void print_state(const FollowedState& state) const {
@@ -387,7 +388,7 @@ int capture(const CaptureOptions& options) {
     is_complete = session.poses.empty();
   }
   if (!options.calibrate.empty()) {
-    session.follower.emplace(options, session.robot);
+    session.follower.emplace(options, session.robot, session.urdf);
     for (const Sample& sample : session.samples) session.follower->add(sample, session.poses);
   }
   const std::string lost = is_complete ? "" : session.run(config);

@@ -39,7 +39,8 @@ std::string not_determined(const Calibration& calibration) {
 }  // namespace
 
 int check(const InputOptions& options) {
-  const Input input = read_input(options);
+  InputTexts texts;
+  const PreparedCalibration input = read_input(options, texts);
   print(input.diagnostics);
   const std::size_t errors = input.diagnostics.errors.size();
   if (errors > 0) {

@@ -68,9 +68,13 @@ struct CalibrateOptions : ResultOptions {
 /// Calibrates the robot and writes the results, all or none.
 int calibrate(const CalibrateOptions& options);
 
+struct LogOptions : CalibrateOptions {
+  int draw = 3000;  ///< samples on which the log is judged
+};
+
 /// Calibrates with recordings that are read one after another, never all at once; several processes
 /// share them.
-int calibrate_log(const ResultOptions& options);
+int calibrate_log(const LogOptions& options);
 
 /// Checks what can be known of the results before the work.
 /// @throws OutputError  if the folder cannot be written to, or has files that may not be replaced

@@ -95,7 +95,7 @@ void check_same_robot(const Assembled& a, const Assembled& b) {
 /// The lens of the camera that has a parameter; empty if it is of no camera.
 std::string lens_of_parameter(const Assembled& of, const std::string& name) {
   for (const ModelConfig& model : detail::models_of(of.result.config)) {
-    const SensorEntry* entry = registry().sensor(model.type);
+    const SensorEntry* entry = entry_of(model);
     const bool has_lens = entry != nullptr && entry->has_lens;
     if (has_lens && of.owner(name) == model.param_name) return model.lens;
   }

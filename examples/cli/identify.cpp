@@ -6,7 +6,6 @@
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/config/doubts/judge_causes.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/results/standard_output.hpp"
 #include "kinecal/files/text_file.hpp"
@@ -44,9 +43,9 @@ std::string plain_name(const std::string& name) {
 }
 
 /// The poses that would decide between what was freed and the first that looks alike, as a command; empty if nothing does.
-std::string deciding_command(const SearchedFit& found, const InputOptions& next) {
+std::string deciding_command(const CalibratedRobot& found, const InputOptions& next) {
   if (next.urdf.empty()) return "";
-  for (const ReportedSearchStep& step : found.fit.findings.search.steps) {
+  for (const ReportedSearchStep& step : found.search.steps) {
     const auto other =
         std::find_if(step.alike.begin(), step.alike.end(), [&](const std::string& name) {
           return std::find(step.inseparable.begin(), step.inseparable.end(), name) ==
@@ -55,7 +54,8 @@ std::string deciding_command(const SearchedFit& found, const InputOptions& next)
     if (other == step.alike.end()) continue;
     const std::string names = plain_name(step.freed) + "," + plain_name(*other);
     InputOptions inputs = next;
-    if (!sees_everywhere(found.search.config)) inputs.samples.clear();  // views are generated
+    if (!sees_everywhere(found.robot_search->config))
+      inputs.samples.clear();  // views are generated
     inputs.cameras.clear();
     return fmt::format(
         "which poses would decide between what explains the same:\n"
@@ -73,34 +73,33 @@ int identify(const IdentifyOptions& options) {
   check_output(options.output, inputs, options.force);
   CalibrateOptions calibration = for_calibration(options);
   check_reports(calibration);
-  Input input = read_input(calibration);
-  print_or_throw(input.diagnostics);
-  SearchedFit found = search_and_fit(input, calibration, options.geometry_only, {}, {});
-  input.diagnostics.warnings.clear();  // calibrate repeats them: what a URDF cannot hold
-  print(input.diagnostics);
-  say("{}", search_summary(found, input));
-  Findings& findings = found.fit.findings;
-  if (!found.is_empty()) {
-    judge_causes({input.config, input.robot, input.urdf_text, input.urdf, found.fit.samples,
-                  found.fit.calibration},
-                 findings);
-  }
-  for (const std::string& reason : findings.judgement.reasons) say("  - {}\n", reason);
-  if (found.is_empty()) {
+  InputTexts texts;
+  PreparedCalibration prepared = read_input(calibration, texts);
+  print_or_throw(prepared.diagnostics);
+  prepared.diagnostics.notes.clear();  // they are printed
+  CalibrationOptions searching = calibration_options(calibration);
+  searching.geometry_only = options.geometry_only;
+  CalibratedRobot found = calibrate_robot(std::move(prepared), searching);
+  found.setup.diagnostics.warnings.clear();  // calibrate repeats them: what a URDF cannot hold
+  print(found.setup.diagnostics);
+  say("{}", search_summary(found));
+  Findings& findings = found;
+  if (found_nothing(found)) {
     say("{} was not written: no pose is unknown, and these samples support no parameter\n",
         options.output);
     return kNotUsable;
   }
+  for (const std::string& reason : findings.judgement.reasons) say("  - {}\n", reason);
   InputOptions next = calibration;
   next.config = options.output;
   findings.call = {options.command, input_options(next), "", KINECAL_VERSION,
-                   read_files(calibration, input)};
-  write_reports(calibration, input, found.fit);
+                   read_files(calibration, texts)};
+  write_reports(calibration, texts, found);
   if (findings.judgement.verdict == Grade::do_not_use) {
     say("{} · {} was not written\n", findings_line(findings), options.output);
     return kNotUsable;
   }
-  write_text_file(options.output, found.config);
+  write_text_file(options.output, found_config(found));
   std::string line = findings_line(findings) + " · " + options.output;
   for (const std::string& report : options.reports) line += " · " + report;
   say("{}\n", line);

@@ -2,38 +2,42 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "commands.hpp"
-#include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/recordings/read_recording.hpp"
-#include "kinecal/solve/calibrate.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
 
 namespace kinecal::cli {
 
-/// Everything that a calibration needs.
-struct Input {
-  Robot robot;
-  Config config;
-  std::string urdf;              ///< name of the URDF in messages: its file or topic
-  std::string urdf_text;         ///< its content
-  std::string config_text;       ///< content of the configuration
-  std::string found_config;      ///< the one that frees what a search found; empty: there was none
-  bool decides_cameras = false;  ///< finds lenses and where cameras begin, for later files, too
-  bool is_searched = false;      ///< what is free is searched for: nothing is assembled yet
-  std::vector<Sample> samples;
-  Calibration calibration;
-  Diagnostics diagnostics;
+/// The files of a calibration, as text.
+struct InputTexts {
+  std::string urdf;               ///< name of the URDF in messages: its file or topic
+  std::string urdf_text;          ///< its content
+  std::string config_text;        ///< content of the configuration
+  std::string found_config = {};  ///< the one that frees what a search found; empty: there was none
 };
 
-/// Reads and assembles everything; errors go to Input::diagnostics.
-/// @param first  of several files: what it has decided about cameras holds for the others; nullptr: this is the first
-[[nodiscard]] Input read_input(const InputOptions& options, const Input* first = nullptr);
+/// Everything that a calibration needs.
+struct Input {
+  InputTexts texts;
+  CalibrationSetup setup = {};   ///< without robot or configuration after an error
+  Diagnostics diagnostics = {};  ///< of its readers
+};
 
-/// Assembles what was read, and doubts it: for an input whose free parameters were searched for.
-void assemble_input(Input& input, const InputOptions& options);
+/// How the options calibrate.
+[[nodiscard]] CalibrationOptions calibration_options(const InputOptions& options);
+
+/// Reads all files; errors go to Input::diagnostics.
+/// @param reads_samples  false: the samples are read later, file by file
+[[nodiscard]] Input read_files(const InputOptions& options, bool reads_samples = true);
+
+/// Reads all files and prepares the calibration.
+/// @param texts  out
+[[nodiscard]] PreparedCalibration read_input(const InputOptions& options, InputTexts& texts);
 
 /// Reads samples from several files of any format, and the URDF from the first that has one.  Errors
 /// go to the diagnostics.

@@ -13,8 +13,8 @@
 
 #include "commands.hpp"
 #include "explanations.hpp"
-#include "kinecal/config/capture/session_follower.hpp"
 #include "kinecal/files/results/file_set.hpp"
+#include "kinecal/procedure/session_follower.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/frame_name.hpp"

@@ -137,7 +137,17 @@ void add_results(CLI::App& command, ResultOptions& options) {
       ->check(CLI::Range(1, 1024));
 }
 
-void add_calibrate_log(CLI::App& command, ResultOptions& options) {
+void add_reports(CLI::App& command, std::vector<std::string>& reports) {
+  command
+      .add_option(
+          "--report", reports,
+          "write a report, whatever the verdict: a page to look at if the name ends in .html, "
+          "else report.json; may be given twice")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+}
+
+void add_calibrate_log(CLI::App& command, LogOptions& options) {
   add_input(command, options)->required();
   command
       .add_option("--output", options.output,
@@ -146,6 +156,14 @@ void add_calibrate_log(CLI::App& command, ResultOptions& options) {
       ->required()
       ->type_name("DIR");
   add_results(command, options);
+  add_reports(command, options.reports);
+  command
+      .add_option(
+          "--draw", options.draw,
+          "samples, evenly from all files, by which causes, changes, held-out errors and bad "
+          "captures are judged; the result, its +- and the noise are of all samples")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
 }
 
 void add_mesh_path(CLI::App& command, std::vector<std::string>& paths) {
@@ -181,13 +199,7 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
                 "also print values in radians and metres, and what each step did")
       ->excludes(quiet)
       ->excludes(json);
-  command
-      .add_option(
-          "--report", options.reports,
-          "write a report, whatever the verdict: a page to look at if the name ends in .html, "
-          "else report.json; may be given twice")
-      ->allow_extra_args(false)
-      ->type_name("FILE");
+  add_reports(command, options.reports);
   command
       .add_option("--scene", options.scene,
                   "write the robot before and after, and what was measured, for Foxglove and "
@@ -1008,10 +1020,10 @@ void add_commands(Commands& commands, const std::string& line) {
   commands.add<CalibrateOptions>(
       "calibrate", "calibrate the robot and write its corrected URDF and camera files",
       add_calibrate, with_line(line, calibrate));
-  commands.add<ResultOptions>("calibrate-log",
-                              "calibrate with recordings that do not fit into memory, file after "
-                              "file, in several processes",
-                              add_calibrate_log, calibrate_log);
+  commands.add<LogOptions>("calibrate-log",
+                           "calibrate with recordings that do not fit into memory, file after "
+                           "file, in several processes",
+                           add_calibrate_log, with_line(line, calibrate_log));
   commands.add<RecheckOptions>("evaluate", "show how a result fits other samples, without solving",
                                add_evaluate, evaluate);
   commands.add<RecheckOptions>(

@@ -64,11 +64,11 @@ void add_input(const std::string& role, const std::string& name, std::vector<Inp
 }
 
 /// All files that a calibration read, with their checksums.
-std::vector<InputFile> input_files(const CalibrateOptions& options, const Input& input) {
+std::vector<InputFile> input_files(const CalibrateOptions& options, const InputTexts& texts) {
   std::vector<InputFile> files;
-  for (const auto& [role, name] : read_files(options, input)) {
+  for (const auto& [role, name] : read_files(options, texts)) {
     if (role == "URDF" || role == "configuration") {
-      const std::string& text = role == "URDF" ? input.urdf_text : input.config_text;
+      const std::string& text = role == "URDF" ? texts.urdf_text : texts.config_text;
       files.push_back({role, name, text.size(), sha256_text(text)});
     } else {
       add_input(role, name, files);
@@ -91,23 +91,24 @@ std::string day() {
   return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
 }
 
-std::string page(const CalibrateOptions& options, const Input& input, const Fit& fitted) {
-  ReportData data =
-      report_data(fitted.calibration, fitted.findings, fitted.samples, fitted.left_out);
+std::string page(const CalibrateOptions& options, const InputTexts& texts,
+                 const CalibratedRobot& calibrated) {
+  ReportData data = report_data(calibrated.setup.calibration, calibrated, calibrated.samples,
+                                calibrated.left_out_samples);
   data.version = version();
   data.command = options.command;
   data.date = day();
-  data.inputs = input_files(options, input);
-  const Findings& findings = fitted.findings;
+  data.inputs = input_files(options, texts);
+  const Findings& findings = calibrated;
   if (!findings.assessments.empty()) {
     constexpr int kPoses = 400;
     std::vector<double> values;
     for (const Parameter& parameter : findings.result.table) values.push_back(parameter.value);
     const std::size_t step = findings.assessments.size() - 1;
-    data.workspace = workspace_map(*fitted.calibration.steps[step].problem,
+    data.workspace = workspace_map(*calibrated.setup.calibration.steps[step].problem,
                                    findings.assessments.back(), values, kPoses);
   }
-  RobotScene scene = scene_of(input, fitted, options.mesh_paths, {});
+  RobotScene scene = scene_of(calibrated, options.mesh_paths, {});
   for (const KnownPoint& point : data.workspace) {
     const auto& [x, y, z] = point.p_base;
     scene.workspace.push_back({x, y, z, point.deviation});
@@ -120,9 +121,9 @@ std::string page(const CalibrateOptions& options, const Input& input, const Fit&
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> read_files(const CalibrateOptions& options,
-                                                            const Input& input) {
+                                                            const InputTexts& texts) {
   std::vector<std::pair<std::string, std::string>> files = {
-      {"URDF", options.urdf.empty() ? input.urdf : options.urdf}};
+      {"URDF", options.urdf.empty() ? texts.urdf : options.urdf}};
   if (!options.config.empty()) files.emplace_back("configuration", options.config);
   for (const std::string& samples : options.samples) files.emplace_back("samples", samples);
   for (const std::string& camera : options.cameras) {
@@ -158,10 +159,11 @@ void check_reports(const CalibrateOptions& options) {
   for (const std::string& report : options.reports) check_output(report, inputs, kReplace);
 }
 
-void write_reports(const CalibrateOptions& options, const Input& input, const Fit& fitted) {
+void write_reports(const CalibrateOptions& options, const InputTexts& texts,
+                   const CalibratedRobot& calibrated) {
   for (const std::string& report : options.reports) {
     write_text_file(report,
-                    is_page(report) ? page(options, input, fitted) : json_report(fitted.findings));
+                    is_page(report) ? page(options, texts, calibrated) : json_report(calibrated));
   }
 }
 

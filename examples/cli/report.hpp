@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "fit.hpp"
 #include "input.hpp"
 #include "study_input.hpp"
 
@@ -18,7 +17,7 @@ namespace kinecal::cli {
 
 /// All files that a calibration reads, by role ("URDF", "configuration", "samples", "camera").
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> read_files(
-    const CalibrateOptions& options, const Input& input);
+    const CalibrateOptions& options, const InputTexts& texts);
 
 /// The inputs of a study or plan, and the command that repeats it: a section of its page.
 [[nodiscard]] std::string study_inputs(const StudyInput& input);
@@ -29,6 +28,7 @@ void check_reports(const CalibrateOptions& options);
 
 /// Writes the reports that the options ask for: pages or JSON.
 /// @throws OutputError  naming the file
-void write_reports(const CalibrateOptions& options, const Input& input, const Fit& fitted);
+void write_reports(const CalibrateOptions& options, const InputTexts& texts,
+                   const CalibratedRobot& calibrated);
 
 }  // namespace kinecal::cli

@@ -38,22 +38,22 @@ int newest_backup(const fs::path& file) {
   return n;
 }
 
-void add_kinematics(const std::string& name, const Input& input,
+void add_kinematics(const std::string& name, const Robot& robot,
                     const std::vector<JointPatch>& patches, RobotFiles& files) {
   const fs::path file = file_behind(name);
   const std::string existing = fs::exists(file) ? detail::read_text_file(name) : "";
-  const std::string text = kinematics_yaml(input.robot, patches, existing, name);
+  const std::string text = kinematics_yaml(robot, patches, existing, name);
   files.sets.push_back({folder_of(file.string()), {{file.filename().string(), text}}});
   files.said.note({name, 0}, "has the origins of joints; their zeros are in them");
 }
 
 /// Homing offsets are added to: a copy of the file before says whether they hold these zeros already.
-void add_homing(const RobotFileOptions& options, const Input& input,
+void add_homing(const RobotFileOptions& options, const Robot& robot,
                 const std::vector<JointPatch>& patches, RobotFiles& files) {
   const std::string& name = options.homing;
   const ServoMake make = options.servos == "dynamixel" ? ServoMake::dynamixel : ServoMake::feetech;
   const auto patched = [&](const std::string& text) {
-    return patch_homing_offsets(text, name, input.robot, patches, make);
+    return patch_homing_offsets(text, name, robot, patches, make);
   };
   const fs::path file = file_behind(name);
   const std::string text = detail::read_text_file(name);
@@ -82,10 +82,10 @@ void add_homing(const RobotFileOptions& options, const Input& input,
        {{backup_name(file, n + 1), text}, {file.filename().string(), patch.text}}});
 }
 
-void add_xacro(const std::string& name, const Input& input, const std::string& calibrated,
+void add_xacro(const std::string& name, const InputTexts& texts, const std::string& calibrated,
                RobotFiles& files) {
   const std::vector<XacroFile> sources = read_xacro_files(name, files.said);
-  const XacroPatch patch = patch_xacro(sources, input.urdf_text, calibrated);
+  const XacroPatch patch = patch_xacro(sources, texts.urdf_text, calibrated);
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const PatchedXacro& of = patch.files[i];
     if (!of.patched.empty()) {
@@ -107,7 +107,7 @@ bool names_same_file(const std::string& one, const std::string& other) {
 
 }  // namespace
 
-void check_robot_files(const ResultOptions& options, const Input& input) {
+void check_robot_files(const ResultOptions& options, const Robot& robot, const InputTexts& texts) {
   const RobotFileOptions& of = options.robot_files;
   std::vector<std::string> inputs = options.samples;
   inputs.insert(inputs.end(), {options.urdf, options.config});
@@ -131,7 +131,7 @@ void check_robot_files(const ResultOptions& options, const Input& input) {
     const std::vector<XacroFile> all = read_xacro_files(of.xacro, said_when_written);
     for (std::size_t i = 1; i < all.size(); ++i) check(all[i].name);  // that it includes
   }
-  (void)robot_files(options, input, ParameterTable(), input.urdf_text);
+  (void)robot_files(options, robot, texts, ParameterTable(), texts.urdf_text);
 }
 
 std::set<std::string> zeros_in_servos(const RobotFileOptions& of, const Robot& robot) {
@@ -139,16 +139,16 @@ std::set<std::string> zeros_in_servos(const RobotFileOptions& of, const Robot& r
   return servo_joints(detail::read_text_file(of.homing), of.homing, robot);
 }
 
-RobotFiles robot_files(const ResultOptions& options, const Input& input,
+RobotFiles robot_files(const ResultOptions& options, const Robot& robot, const InputTexts& texts,
                        const ParameterTable& table, const std::string& calibrated) {
   const RobotFileOptions& of = options.robot_files;
   RobotFiles files;
   if (!of.kinematics.empty()) {
-    const std::set<std::string> in_servos = zeros_in_servos(of, input.robot);
-    add_kinematics(of.kinematics, input, joint_patches(input.robot, table, in_servos), files);
+    const std::set<std::string> in_servos = zeros_in_servos(of, robot);
+    add_kinematics(of.kinematics, robot, joint_patches(robot, table, in_servos), files);
   }
-  if (!of.homing.empty()) add_homing(of, input, joint_patches(input.robot, table), files);
-  if (!of.xacro.empty()) add_xacro(of.xacro, input, calibrated, files);
+  if (!of.homing.empty()) add_homing(of, robot, joint_patches(robot, table), files);
+  if (!of.xacro.empty()) add_xacro(of.xacro, texts, calibrated, files);
   return files;
 }
 

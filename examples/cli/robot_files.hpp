@@ -22,7 +22,7 @@ struct RobotFiles {
 /// Checks before the work that the files can be read and written, and are what they should be.
 /// @throws InputError   if one is missing or something else
 /// @throws OutputError  if one would replace an input, or its folder cannot be written to
-void check_robot_files(const ResultOptions& options, const Input& input);
+void check_robot_files(const ResultOptions& options, const Robot& robot, const InputTexts& texts);
 
 /// The joints whose zeros go into their servos, by the motors of --homing; none without it.
 [[nodiscard]] std::set<std::string> zeros_in_servos(const RobotFileOptions& of, const Robot& robot);
@@ -31,8 +31,9 @@ void check_robot_files(const ResultOptions& options, const Input& input);
 /// @param table       the calibrated parameters
 /// @param calibrated  the URDF with the calibration, as it is written
 /// @throws InputError  if a file cannot hold it
-[[nodiscard]] RobotFiles robot_files(const ResultOptions& options, const Input& input,
-                                     const ParameterTable& table, const std::string& calibrated);
+[[nodiscard]] RobotFiles robot_files(const ResultOptions& options, const Robot& robot,
+                                     const InputTexts& texts, const ParameterTable& table,
+                                     const std::string& calibrated);
 
 /// Writes all files or none, and prints what was said.
 void write(const RobotFiles& files);

@@ -15,22 +15,22 @@
 
 namespace kinecal::cli {
 
-RobotScene scene_of(const Input& input, const Fit& fitted,
-                    const std::vector<std::string>& mesh_paths, const SceneLimits& limits) {
-  RobotScene scene =
-      robot_scene(fitted.calibration, fitted.findings, fitted.samples, limits, fitted.left_out);
+RobotScene scene_of(const CalibratedRobot& calibrated, const std::vector<std::string>& mesh_paths,
+                    const SceneLimits& limits) {
+  RobotScene scene = robot_scene(calibrated.setup.calibration, calibrated, calibrated.samples,
+                                 limits, calibrated.left_out_samples);
   Diagnostics diagnostics;
-  add_visuals(visuals(input.urdf_text, input.urdf, diagnostics),
-              mesh_places(input.urdf, mesh_paths), input.urdf, scene, diagnostics);
+  add_visuals(visuals(calibrated.setup.urdf_text, calibrated.setup.urdf, diagnostics),
+              mesh_places(calibrated.setup.urdf, mesh_paths), calibrated.setup.urdf, scene,
+              diagnostics);
   print(diagnostics);
   return scene;
 }
 
-void write_scene_file(const std::string& file, const Input& input, const Fit& fitted,
+void write_scene_file(const std::string& file, const CalibratedRobot& calibrated,
                       const std::vector<std::string>& mesh_paths) {
   // Each sample takes 10 to 100 kB.
-  const RobotScene scene =
-      scene_of(input, fitted, mesh_paths, {.samples = 1000, .features = 100000});
+  const RobotScene scene = scene_of(calibrated, mesh_paths, {.samples = 1000, .features = 100000});
   std::ostringstream bytes;
   write_scene(scene, bytes, best_mcap_compression());
   write_text_file(file, bytes.str());

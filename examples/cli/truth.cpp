@@ -11,21 +11,20 @@
 
 namespace kinecal::cli {
 
-std::string truth_text(const Robot& robot, const std::string& scene,
-                       const SessionCalibration& all) {
-  const AnyProblem& problem = *all.calibration.steps.back().problem;
+std::string truth_text(const Robot& robot, const std::string& scene, const CalibratedRobot& all) {
+  const AnyProblem& problem = *all.setup.calibration.steps.back().problem;
   const auto frames = compared_frames(problem, all.samples);
   if (!frames) return {};
   Diagnostics diagnostics;
   const SimulationPlan plan = read_simulation(robot, scene, "", 0, diagnostics);
-  ParameterTable truth = all.judged.result.table;
+  ParameterTable truth = all.result.table;
   for (const Parameter& parameter : plan.setup.truth) {
     if (truth.find(parameter.name) >= 0) truth[parameter.name].value = parameter.value;
   }
   // Where a board is on its link, the simulation does not say by the names of parameters.
   const FrameOnRobot gripper{frames->first.link}, camera{frames->second.link};
-  const Eigen::VectorXd of_truth = truth.values(), drawn = all.calibration.table.values(),
-                        found = all.judged.result.table.values();
+  const Eigen::VectorXd of_truth = truth.values(), drawn = all.setup.calibration.table.values(),
+                        found = all.result.table.values();
   const auto state = [&](const Eigen::VectorXd& values) {
     return RobotState{problem, {values.data(), static_cast<std::size_t>(values.size())}};
   };

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kinecal/config/capture/session_follower.hpp"
+#include "kinecal/procedure/session_follower.hpp"
 
 namespace kinecal::cli {
 
@@ -12,6 +12,6 @@ namespace kinecal::cli {
 /// calibration, over the poses of the samples; as a line to print, empty if nothing is compared.
 /// @param scene  of the simulation: see read_simulation()
 [[nodiscard]] std::string truth_text(const Robot& robot, const std::string& scene,
-                                     const SessionCalibration& all);
+                                     const CalibratedRobot& all);
 
 }  // namespace kinecal::cli

@@ -6,10 +6,11 @@
 #include <fstream>
 #include <optional>
 
-#include "../cli/output.hpp"
 #include "kinecal/files/recordings/read_recording.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/procedure/calibrated_files.hpp"
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/text.hpp"
 #include "simulate.hpp"
@@ -123,19 +124,19 @@ int calibrate(const RobotExample& example, const Options& options) {
   std::optional<OutputFolder> folder;
   if (!options.output.empty()) folder.emplace(options.output);
 
-  Calibration calibration = calibration_of(example, samples);
-  JudgedResult judged = calibrate_and_judge(calibration, samples);
-  const std::vector<Sample> used = used_samples(judged, samples);
-  const Findings findings = findings_of(example.robot, calibration, std::move(judged), used);
-  fmt::print("{}", summary_text(findings));
+  const CalibratedRobot calibrated = example.calibrate(samples, read_urdf_text(example.urdf));
+  fmt::print("{}", summary_text(calibrated));
   std::fflush(stdout);
-  if (findings.judgement.verdict == Grade::do_not_use) return kNotGood;
+  if (!calibrated.is_usable()) return kNotGood;
   if (folder) {
-    const cli::UrdfFile urdf{example.urdf, read_urdf_text(example.urdf)};
-    cli::write(*folder, cli::output_files(example.robot, urdf, calibration, findings, used));
+    const std::vector<OutputFile> files = calibrated_files(calibrated);
+    folder->write(files);
+    for (const OutputFile& file : files) {
+      fmt::print("wrote {}\n", (folder->path() / file.name).string());
+    }
   }
   if (!simulation) return kGood;
-  if (is_as_good_as_the_truth(hold_out(example, *simulation, options, findings.result)))
+  if (is_as_good_as_the_truth(hold_out(example, *simulation, options, calibrated.result)))
     return kGood;
   fmt::print(
       stderr,

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "kinecal/crate/crate.hpp"
+#include "kinecal/procedure/calibrate_crate.hpp"
 #include "robot_example.hpp"
 
 namespace kinecal::examples {
@@ -65,6 +66,9 @@ template <class C>
     return std::make_unique<Problem>(crate.problem(crate.table(samples)));
   };
   example.free_set = &C::free;
+  example.calibrate = [crate](std::span<const Sample> samples, const std::string& urdf_text) {
+    return calibrate_and_judge(crate, samples, {}, urdf_text);
+  };
   return example;
 }
 

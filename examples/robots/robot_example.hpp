@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kinecal/problem/any_problem.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
 #include "simulated.hpp"
 
 namespace kinecal::examples {
@@ -51,6 +52,9 @@ struct RobotExample {
   /// The crate's problem, without samples; cameras start from the settings in these samples.
   std::function<std::unique_ptr<AnyProblem>(std::span<const Sample>)> problem = {};
   std::function<FreeSet(const ParameterTable&)> free_set = {};
+  /// Calibrates and judges the crate.
+  std::function<CalibratedRobot(std::span<const Sample>, const std::string& urdf_text)> calibrate =
+      {};
 };
 
 /// Calibrates a robot on simulated samples, or on those of a file, and prints the result.

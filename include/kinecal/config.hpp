@@ -4,8 +4,6 @@
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/capture/capture_config.hpp"
-#include "kinecal/config/capture/session_end.hpp"
-#include "kinecal/config/capture/session_follower.hpp"
 #include "kinecal/config/choose_images.hpp"
 #include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/config.hpp"

@@ -6,6 +6,7 @@
 #include "kinecal/config.hpp"
 #include "kinecal/core.hpp"
 #include "kinecal/files.hpp"
+#include "kinecal/procedure.hpp"
 #include "kinecal/report.hpp"
 #include "kinecal/robots.hpp"
 #include "kinecal/solve.hpp"

@@ -20,7 +20,7 @@
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/identify.hpp"
 #include "kinecal/trust/judge.hpp"
-#include "kinecal/trust/judge_crate.hpp"
+#include "kinecal/trust/judge_files.hpp"
 #include "kinecal/trust/judge_shards.hpp"
 #include "kinecal/trust/lens_pattern.hpp"
 #include "kinecal/trust/measured_numbers.hpp"

@@ -16,9 +16,9 @@
 #include "kinecal/capture/find_leds.hpp"
 #include "kinecal/capture/session.hpp"
 #include "kinecal/config/assemble.hpp"
-#include "kinecal/config/capture/session_end.hpp"
-#include "kinecal/config/capture/session_follower.hpp"
 #include "kinecal/config/read_config.hpp"
+#include "kinecal/procedure/session_end.hpp"
+#include "kinecal/procedure/session_follower.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"
 #include "support/simulated_fetch.hpp"
@@ -121,7 +121,7 @@ Outcome capture(std::uint64_t seed, const std::vector<CapturePose>& all) {
     }
   });
   outcome.minutes = static_cast<double>((robot.now() - start).count()) / kMinute;
-  const JudgedResult judged = follower.calibrate_all().judged;
+  const JudgedResult judged = follower.calibrate_all();
   const TrueRobot truth(setup.robot, setup.truth, setup.frames);
   const TrueRobot drawn(setup.robot, {}, setup.frames);
   const TrueRobot calibrated(setup.robot, judged.result.table, setup.frames);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
 
@@ -13,6 +15,7 @@ struct Recording {
   std::string urdf;
   Config config;
   std::vector<Sample> samples, right;
+  std::string config_text = {};
 };
 
 inline Recording read_recording(const char* name, const std::filesystem::path& urdf,
@@ -22,6 +25,7 @@ inline Recording read_recording(const char* name, const std::filesystem::path& u
   Recording of{name, sensor, text_of(urdf), read_config(config.string(), diagnostics), {}, {}};
   const std::vector<Sample> all = read_samples(samples.string(), diagnostics);
   diagnostics.throw_if_errors();
+  of.config_text = text_of(config);
   const bool many = all.size() > 500;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (many ? i >= 260 : false) break;
@@ -29,6 +33,15 @@ inline Recording read_recording(const char* name, const std::filesystem::path& u
                                   : of.samples.push_back(all[many ? (i * 389) % all.size() : i]);
   }
   return of;
+}
+
+/// A recording as a calibration takes it.
+inline CalibrationSetup setup_of(const Recording& of) {
+  return {.robot = parse_urdf(of.urdf, "robot.urdf"),
+          .config = of.config,
+          .samples = of.samples,
+          .urdf_text = of.urdf,
+          .urdf = "robot.urdf"};
 }
 
 inline Recording recording(const std::string& name) {

@@ -15,7 +15,9 @@ ShardAssessment known(const test::NoisyScene& scene, int size, std::vector<doubl
   EXPECT_TRUE(
       solve_shards(shards.shards(), scene.free(), values, test::NoisyScene::span(start)).converged);
   const std::vector<Sample> first(scene.samples.begin(), scene.samples.begin() + size);
-  return assess_shards(shards.shards(), scene.free(), test::NoisyScene::span(start), values, first);
+  const auto drawn = scene.problem(first);
+  return assess_shards(shards.shards(), scene.free(), test::NoisyScene::span(start), values, *drawn,
+                       first);
 }
 
 TEST(AssessShards, SaysWhatAllSamplesAtOnceSay) {

@@ -5,7 +5,6 @@
 
 #include <set>
 
-#include "kinecal/trust/judge_crate.hpp"
 #include "kinecal/trust/judge_shards.hpp"
 #include "support/noisy_scene.hpp"
 #include "support/oracle.hpp"
@@ -105,14 +104,15 @@ TEST(CalibrateAndJudge, OfShardsIsThatOfAllSamples) {
     const auto first = scene.samples.begin() + 30 * s;
     return std::vector<Sample>(first, first + 30);
   };
-  const std::vector<Sample> of_first = shard(0);
-  ShardedCalibration sharded{make_calibration(scene.problem({}), scene.free(), of_first),
-                             of_first,
-                             {"one", "two", "three"},
-                             90,
-                             {whole.steps[0].problem->num_residuals()},
-                             {whole.steps[0].free},
-                             shard};
+  const std::vector<Sample> drawn = shard(0);
+  Calibration of_draw = make_calibration(scene.problem({}), scene.free(), drawn);
+  const ShardedCalibration sharded{.calibration = of_draw,
+                                   .samples = drawn,
+                                   .names = {"one", "two", "three"},
+                                   .num_samples = 90,
+                                   .num_residuals = {whole.steps[0].problem->num_residuals()},
+                                   .free = {whole.steps[0].free},
+                                   .read = shard};
   const JudgedResult judged = calibrate_and_judge(sharded, options);
   constexpr double kSame = 2e-3;  // sigma is estimated to 1 %
   const Eigen::VectorXd values = expected.result.table.values();
@@ -120,53 +120,8 @@ TEST(CalibrateAndJudge, OfShardsIsThatOfAllSamples) {
   EXPECT_EQ(judged.judgement.verdict, expected.judgement.verdict);
   EXPECT_EQ(judged.result.steps.back().samples, 90);
   EXPECT_TRUE(judged.numbers.empty()) << "of a thousand million samples they would fill the memory";
-  EXPECT_NEAR(sharded.first.steps[0].problem->term(0).sigma, whole.steps[0].problem->term(0).sigma,
+  EXPECT_NEAR(of_draw.steps[0].problem->term(0).sigma, whole.steps[0].problem->term(0).sigma,
               0.02 * whole.steps[0].problem->term(0).sigma);
-}
-
-template <FixedString Tip>
-using FromBase = Chain<StaticRobot, "base", Tip>;
-using Elbow = JointOffset<"elbow">;
-using Mount = FrameOffset<"mount", Axes::xyz>;
-using Tracked = Crate<Chain3d<"arm", FromBase<"tip">>, Chain3d<"tracker", FromBase<"base">>, Elbow,
-                      Mount, Block<"tracking", PointToPoint, "arm", "tracker">>;
-
-TEST(CalibrateAndJudge, GivesACrateValuesWithTheirDeviationsAndTheVerdict) {
-  constexpr double kElbow = 0.02, kNoise = 1e-4;
-  ParameterTable truth = Tracked().table({});
-  truth["elbow"].value = kElbow;
-  const test::OracleValues<double> of_robot(truth, truth.values());
-  test::Chance chance(5);
-  std::vector<Sample> samples;
-  for (int n = 0; n < 40; ++n) {
-    Sample& sample = samples.emplace_back();
-    sample.source = "sample " + std::to_string(n);
-    for (const char* joint : {"lift", "pan", "elbow", "wrist"}) {
-      sample.joint_names.emplace_back(joint);
-      sample.joint_positions.push_back(chance(-1.0, 1.0));
-    }
-    const auto tip =
-        test::oracle_pose(robot_from<StaticRobot>(), "base", "tip", "", sample, of_robot);
-    sample.observations = {{"arm", {}, {}}, {"tracker", {}, {}}};
-    for (int i = 0; i < 3; ++i) {
-      const Vector3<double> p(0.1 * i, 0.05, 0.02 * i * i);
-      const Vector3<double> noise(chance.normal(), chance.normal(), chance.normal());
-      sample.observations[0].features.push_back({"tip", p});
-      sample.observations[1].features.push_back({"base", Vector3<double>(tip(p) + kNoise * noise)});
-    }
-  }
-  samples[11].joint_positions[2] += 0.3;
-  const JudgedCrate<Tracked> judged = calibrate_and_judge(Tracked(), samples);
-  EXPECT_EQ(judged.judgement.verdict, Grade::good) << judged.judgement.reasons.front();
-  const double deviation = judged.deviation<Elbow>();
-  EXPECT_GT(deviation, 0.0);
-  EXPECT_LT(deviation, 1e-3);
-  EXPECT_NEAR(judged.value<Elbow>(), kElbow, 4.0 * deviation);
-  const Vector3<double> of_mount = judged.deviation<Mount>();
-  EXPECT_TRUE((of_mount.array() > 0.0).all());
-  ASSERT_EQ(judged.left_out.size(), 1u);
-  EXPECT_EQ(judged.left_out[0].number, 12);
-  EXPECT_THAT(judged.left_out[0].why, HasSubstr("likely cause: 'elbow' reads"));
 }
 
 }  // namespace

@@ -23,21 +23,26 @@ struct InShards {
     once = calibrate_and_judge(at_once, all.samples, options);
   }
   [[nodiscard]] JudgedResult calibrate(const ShardExchange& exchange = {}) {
-    Photographs first = all;
-    first.samples.resize(kSecond);
-    sharded.first = first.calibration(names);
-    first_samples = first.samples;
-    sharded.samples = first_samples;
-    sharded.names = {"a", "b", "c"};
-    sharded.num_samples = std::ssize(all.samples);
-    sharded.num_residuals = {at_once.steps[0].problem->num_residuals()};
-    sharded.free = {at_once.steps[0].free};
-    sharded.read = [this](int shard) {
-      const auto begin = all.samples.begin();
-      return shard == 1 ? std::vector<Sample>(begin + kSecond, begin + kThird)
-                        : std::vector<Sample>(begin + kThird, all.samples.end());
-    };
-    sharded.exchange = exchange;
+    Photographs drawn = all;
+    drawn.samples.resize(kSecond);
+    Calibration of_draw = drawn.calibration(names);
+    const ShardedCalibration sharded{
+        .calibration = of_draw,
+        .samples = drawn.samples,
+        .names = {"a", "b", "c"},
+        .num_samples = std::ssize(all.samples),
+        .num_residuals = {at_once.steps[0].problem->num_residuals()},
+        .free = {at_once.steps[0].free},
+        .read =
+            [this](int shard) {
+              const auto at = [&](std::size_t place) {
+                return all.samples.begin() + static_cast<std::ptrdiff_t>(place);
+              };
+              return shard == 0   ? std::vector<Sample>(at(0), at(kSecond))
+                     : shard == 1 ? std::vector<Sample>(at(kSecond), at(kThird))
+                                  : std::vector<Sample>(at(kThird), all.samples.end());
+            },
+        .exchange = exchange};
     return calibrate_and_judge(sharded);
   }
 
@@ -45,8 +50,6 @@ struct InShards {
   std::vector<std::string> names;
   Calibration at_once;
   JudgedResult once;
-  ShardedCalibration sharded;
-  std::vector<Sample> first_samples;
 };
 
 const std::vector<std::string> kLens = {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};

@@ -55,7 +55,7 @@ struct Company {
 
 /// @throws std::exception  if the block's numbers are impossible or its sensors do not match
 inline void add_block(AnyProblem& problem, const BlockConfig& block, bool exclusive) {
-  const BlockEntry* entry = registry().block(block.type);
+  const BlockEntry* entry = entry_of(block);
   if (entry == nullptr) throw std::invalid_argument("no type '" + block.type + "'");
   TermOptions options;
   options.type = block.type;

@@ -200,7 +200,7 @@ void prepare_search(CalibrationStep& step, const Config& config, const StepConfi
   Diagnostics ignored;  // already reported for the whole problem
   std::vector<BlockConfig> pixels;
   std::erase_if(of_step.error_blocks, [&](const BlockConfig& block) {
-    const BlockEntry* entry = registry().block(block.type);
+    const BlockEntry* entry = entry_of(block);
     const bool is_pixel = entry != nullptr && entry->read_as == PointToPixel::kType;
     if (is_pixel) pixels.push_back(block);
     return is_pixel;

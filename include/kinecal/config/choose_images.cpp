@@ -153,8 +153,7 @@ void choose_images(Config& config, const Robot& robot, std::span<const Sample> s
         if (model.name == camera.name && given == ImageKind::automatic) given = model.image;
       }
     }
-    const detail::ImageOptions options =
-        detail::image_options(samples, camera, *registry().sensor(camera.type));
+    const detail::ImageOptions options = detail::image_options(samples, camera, *entry_of(camera));
     const std::string coefficient = detail::free_coefficient(config, camera);
     if (given == ImageKind::rectified && !coefficient.empty()) {
       diagnostics.error(camera.place,

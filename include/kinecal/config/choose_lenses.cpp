@@ -62,7 +62,7 @@ void replace_lens(std::vector<Sample>& samples, const std::string& camera,
 void set_lens(Config& config, const std::string& camera, const std::string& lens) {
   for (StepConfig& step : config.steps) {
     for (ModelConfig& model : step.models) {
-      const SensorEntry* entry = registry().sensor(model.type);
+      const SensorEntry* entry = entry_of(model);
       if (model.name == camera && entry != nullptr && entry->has_lens) model.lens = lens;
     }
   }
@@ -92,7 +92,7 @@ void take_recorded_lens(Config& config, const ModelConfig& camera, const Recorde
 
 void choose_lenses(Config& config, std::vector<Sample>& samples, Diagnostics& diagnostics) {
   for (const ModelConfig& camera : detail::models_of(config)) {
-    const SensorEntry* entry = registry().sensor(camera.type);
+    const SensorEntry* entry = entry_of(camera);
     if (entry == nullptr || !entry->has_lens || camera.image == ImageKind::rectified) continue;
     const detail::RecordedLenses recorded = detail::recorded_lenses(samples, camera.name);
     if (camera.lens.empty()) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,9 @@
 #include "kinecal/sensors/camera_image.hpp"
 
 namespace kinecal {
+
+struct BlockEntry;
+struct SensorEntry;
 
 /// `lens: auto`  the simplest lens with which the samples agree.
 inline constexpr std::string_view kAnyLens = "auto";
@@ -33,6 +37,8 @@ struct ModelConfig {
   ImageKind image = ImageKind::automatic;  ///< (kinecal only) of a camera2d: the kind of its image
   /// (kinecal only) of a camera2d: its lens by lens_names(), "auto", or empty: as camera_info says
   std::string lens = {};
+  /// Its type, where a program brings its own; nullptr: the one that the registry has by this name.
+  std::shared_ptr<const SensorEntry> own = nullptr;
 };
 
 /// `free_params:`  a joint offset or a camera parameter.
@@ -94,6 +100,8 @@ struct BlockConfig {
       {};                ///< standard deviation, units of the residual; empty: not given
   LossConfig loss;       ///< of each feature
   SourceLocation place;  ///< where the file defines it
+  /// Its type, where a program brings its own; nullptr: the one that the registry has by this name.
+  std::shared_ptr<const BlockEntry> own = nullptr;
 };
 
 /// One optimization.  Each step starts from the result of the step before it.

@@ -17,7 +17,7 @@ namespace kinecal::detail {
 /// Reports a model that does not deliver the quantity the block takes.
 inline void check_model_kind(const ConfigMap& map, const BlockConfig& block, const std::string& key,
                              const ModelConfig& model, Quantity quantity) {
-  const SensorEntry* entry = registry().sensor(model.type);
+  const SensorEntry* entry = entry_of(model);
   if (entry == nullptr || entry->sensor->delivers(quantity)) return;
   std::string fitting;
   bool several = false;

@@ -26,7 +26,7 @@ namespace kinecal::detail {
   const auto image = map.text("image");
   if (!image) return ImageKind::automatic;
   const SourceLocation place = map.find("image")->place;
-  if (const auto* entry = registry().sensor(model.type); entry != nullptr && !entry->has_image) {
+  if (const auto* entry = entry_of(model); entry != nullptr && !entry->has_image) {
     map.error(place,
               "image is a key of " + types_with_image() + ", but the type is '" + model.type + "'");
   }
@@ -42,7 +42,7 @@ namespace kinecal::detail {
   const auto lens = map.text("lens");
   if (!lens) return {};
   const SourceLocation place = map.find("lens")->place;
-  const SensorEntry* entry = registry().sensor(model.type);
+  const SensorEntry* entry = entry_of(model);
   if (entry != nullptr && !entry->has_lens) {
     map.error(place, "lens is a key of camera2d, but the type is '" + model.type + "'");
   }

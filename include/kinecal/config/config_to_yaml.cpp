@@ -142,7 +142,7 @@ using Comments = std::map<std::string, std::string>;
   const auto add = [&](std::string_view key, const std::string& value) {
     text += fmt::format("   {}: {}\n", key, value);
   };
-  const BlockEntry* entry = registry().block(block.type);
+  const BlockEntry* entry = entry_of(block);
   if (entry != nullptr) {
     for (std::size_t i = 0; i < std::min(entry->sensors.size(), block.models.size()); ++i) {
       add(entry->sensors[i].keys.front(), name_to_yaml(block.models[i]));

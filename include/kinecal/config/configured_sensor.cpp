@@ -9,7 +9,7 @@
 namespace kinecal::detail {
 
 const SensorEntry& sensor_entry(const ModelConfig& model) {
-  const SensorEntry* entry = registry().sensor(model.type);
+  const SensorEntry* entry = entry_of(model);
   if (entry != nullptr) return *entry;
   const std::vector<SensorEntry>& all =
       registry().sensors();  // any camera: for names of parameters

@@ -31,7 +31,7 @@ struct ImageFit {
 
 /// True if a model is of a type with the key `image`.
 [[nodiscard]] inline bool has_image(const ModelConfig& model) {
-  const SensorEntry* entry = registry().sensor(model.type);
+  const SensorEntry* entry = entry_of(model);
   return entry != nullptr && entry->has_image;
 }
 
@@ -50,7 +50,7 @@ inline void add_losses(Config& config) {
   constexpr double kScale = 2.0;  // pixels
   for (StepConfig& step : config.steps) {
     for (BlockConfig& block : step.error_blocks) {
-      const BlockEntry* entry = registry().block(block.type);
+      const BlockEntry* entry = entry_of(block);
       if (entry == nullptr || entry->unit != "px" || block.loss.type != "none") continue;
       block.loss = {"cauchy", kScale / block.sigma.value_or(1.0)};
     }

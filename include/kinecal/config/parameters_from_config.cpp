@@ -14,7 +14,7 @@
 namespace kinecal::detail {
 
 std::vector<ParameterInfo> own_parameters(const BlockConfig& block) {
-  const BlockEntry* entry = registry().block(block.type);
+  const BlockEntry* entry = entry_of(block);
   if (entry == nullptr) return {};
   try {
     return entry->parameters(block);

@@ -171,4 +171,12 @@ Registry& registry() {
   return all;
 }
 
+const SensorEntry* entry_of(const ModelConfig& model) {
+  return model.own ? model.own.get() : registry().sensor(model.type);
+}
+
+const BlockEntry* entry_of(const BlockConfig& block) {
+  return block.own ? block.own.get() : registry().block(block.type);
+}
+
 }  // namespace kinecal

@@ -121,4 +121,10 @@ class Registry {
 /// The registry of this program.
 [[nodiscard]] Registry& registry();
 
+/// The type of a model or error block: its own, or that of the registry; nullptr if there is none.
+/// @{
+[[nodiscard]] const SensorEntry* entry_of(const ModelConfig& model);
+[[nodiscard]] const BlockEntry* entry_of(const BlockConfig& block);
+/// @}
+
 }  // namespace kinecal

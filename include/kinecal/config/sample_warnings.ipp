@@ -28,7 +28,7 @@ template <class IsMeant>
   std::set<std::string> names;
   for (const StepConfig& step : config.steps) {
     for (const ModelConfig& model : step.models) {
-      const SensorEntry* entry = registry().sensor(model.type);
+      const SensorEntry* entry = entry_of(model);
       if (entry != nullptr && is_meant(*entry->sensor)) names.insert(model.name);
     }
   }

@@ -74,6 +74,16 @@ class Crate {
     return part_of<Name>(priors_);
   }
 
+  /// A block or prior by its type: Block<...> or PriorOn<...>.
+  template <class P>
+  [[nodiscard]] const P& part() const {
+    if constexpr (BlockPart<P>) {
+      return std::get<P>(blocks_);
+    } else {
+      return std::get<P>(priors_);
+    }
+  }
+
   /// The robot of the chains, at run time.
   [[nodiscard]] static Robot robot() { return robot_from<RobotOf>(); }
   /// The link at which all chains start and in which the sensors are compared.

@@ -10,6 +10,7 @@
 #include "kinecal/report/cameras_text.ipp"
 #include "kinecal/report/parameters_text.ipp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/trust/repeat_noise.hpp"
 
 namespace kinecal {
@@ -105,7 +106,13 @@ std::string note_on(const Parameter& parameter, double deviation) {
 
 [[nodiscard]] inline std::string captures_text(const Findings& findings) {
   std::string text;
+  constexpr std::size_t kListed = 50;  // of a log there may be thousands
   for (const LeftOutSample& sample : findings.left_out) {
+    if (&sample == findings.left_out.data() + kListed) {
+      text += fmt::format("  and {} more left out, see report.json\n",
+                          findings.left_out.size() - kListed);
+      break;
+    }
     text +=
         fmt::format("  {} (sample {}): {}; left out\n", sample.source, sample.number, sample.why);
   }
@@ -156,11 +163,15 @@ Findings findings_of(const Robot& robot, const Calibration& calibration, JudgedR
 
 std::string findings_text(const Findings& findings, Figures figures) {
   std::string text = detail::verdict_text(findings, figures);
-  std::int64_t samples = std::ssize(findings.sources);  // none are kept of samples in shards
-  if (samples == 0 && !findings.result.steps.empty()) samples = findings.result.steps[0].samples;
-  text +=
-      fmt::format("\nRobot '{}', {} sample{}", findings.robot, samples, samples == 1 ? "" : "s");
+  text += fmt::format("\nRobot '{}', {}", findings.robot,
+                      counted(static_cast<std::size_t>(findings.used_count()), "sample"));
   if (!findings.left_out.empty()) text += fmt::format(", {} left out", findings.left_out.size());
+  if (findings.drawn > 0) {
+    text += fmt::format(
+        "\nResult, +- and noise are of all samples; held-out errors, causes, patterns, changes and "
+        "the\nsamples below are of {} drawn evenly from all files",
+        findings.drawn);
+  }
   text += "\n\n" + detail::fit_table(findings) + "\n" + detail::parameters_text(findings, figures);
   const std::string cameras = detail::cameras_text(findings);
   if (!cameras.empty()) text += "\n" + cameras;
@@ -191,7 +202,8 @@ std::string findings_line(const Findings& findings) {
   text += fits;
   const std::size_t out = findings.left_out.size();
   if (out == 0) return text;
-  return text + fmt::format(" · {} of {} samples left out", out, findings.sources.size() + out);
+  return text + fmt::format(" · {} of {} samples left out", out,
+                            findings.used_count() + static_cast<std::int64_t>(out));
 }
 
 }  // namespace kinecal

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
@@ -30,6 +31,14 @@ struct Findings : JudgedResult {
   RecordedPoses poses = {};    ///< of the samples that were used
   ProgramCall call = {};       ///< how the program was called
   bool has_own_poses = false;  ///< a target has a pose of its own in each sample
+  std::int64_t drawn =
+      0;  ///< samples by which a log was judged where all at once are needed; 0: all
+
+  /// Number of samples that the result uses: of a log those of all files, not of the draw.
+  [[nodiscard]] std::int64_t used_count() const {
+    return result.steps.empty() ? static_cast<std::int64_t>(sources.size())
+                                : result.steps.front().samples;
+  }
 };
 
 /// What is reported of a judged calibration.

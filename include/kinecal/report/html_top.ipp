@@ -107,8 +107,9 @@ namespace kinecal::detail {
     reasons += "<li>Would help: " + html_sentence(help) + "</li>";
   const auto left_out = std::count_if(data.samples.begin(), data.samples.end(),
                                       [](const ReportedSample& sample) { return sample.left_out; });
-  std::string about = fmt::format("{} samples", data.samples.size() - left_out);
+  std::string about = fmt::format("{} samples", data.solved);
   if (left_out > 0) about += fmt::format(", {} left out", left_out);
+  if (data.drawn > 0) about += fmt::format(", judged on {} of them drawn evenly", data.drawn);
   if (!data.recorded.empty()) about += ", recorded " + data.recorded;
   if (!data.date.empty()) about += ", calibrated " + data.date;
   return fmt::format(

@@ -172,6 +172,8 @@ std::string json_report(const Findings& findings) {
       {"inputs", json_list(findings.call.files, file)},
       {"verdict", to_string(findings.judgement.verdict)},
       {"reasons", findings.judgement.reasons},
+      {"samples", findings.used_count()},
+      {"drawn", findings.drawn},
       {"would_help", findings.helps},
       {"how_fast", findings.speeds},
       {"search", json_list(findings.search.steps, searched)},

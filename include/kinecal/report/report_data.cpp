@@ -113,6 +113,8 @@ ReportData report_data(const Calibration& calibration, const Findings& findings,
   data.search = findings.search;
   data.next = next_step(findings);
   data.steps = findings.result.steps;
+  data.solved = findings.used_count();
+  data.drawn = findings.drawn;
   data.blocks = detail::reported_blocks(calibration, findings, samples, left_out);
   data.samples = detail::reported_samples(findings);
   data.parameters = detail::reported_parameters(calibration, findings);

@@ -96,6 +96,9 @@ struct ReportData {
   ReportedSearch search;          ///< that chose the free parameters
   std::vector<StepResult> steps;  ///< with the cost of each iteration
   std::vector<ReportedBlock> blocks;
+  std::int64_t solved = 0;  ///< samples of the result
+  std::int64_t drawn =
+      0;  ///< of these, the ones that are shown and by which a log was judged; 0: all
   std::vector<ReportedSample> samples;  ///< used ones by number in the problem, then those left out
   std::vector<ReportedParameter> parameters;
   std::vector<std::string> correlated;           ///< names: rows and columns of the matrix below

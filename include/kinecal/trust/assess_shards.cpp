@@ -152,7 +152,8 @@ struct EachShard {
 }  // namespace detail
 
 ShardAssessment assess_shards(const Shards& shards, const FreeSet& free, ParameterValues before,
-                              ParameterValues after, std::span<const Sample> samples) {
+                              ParameterValues after, const AnyProblem& drawn,
+                              std::span<const Sample> samples) {
   const AnyProblem& problem = *shards.problem;
   ShardAssessment found;
   Assessment& of = found.assessment;
@@ -176,10 +177,9 @@ ShardAssessment assess_shards(const Shards& shards, const FreeSet& free, Paramet
   found.far = detail::far_features(each, sums, of.noise);
   found.copies = detail::copies_among(each.costs);
   found.misfits = std::move(each.misfits);
-  const std::shared_ptr<const AnyProblem> first = shards.read(0);
-  if (const auto frames = compared_frames(*first, samples)) {
-    const LinearFit fit = linear_fit(*first->evaluator(inside, 1), after, by);
-    of.pose = pose_uncertainty(*first, inside, after, fit, of.uncertainty, samples, frames->first,
+  if (const auto frames = compared_frames(drawn, samples)) {
+    const LinearFit fit = linear_fit(*drawn.evaluator(inside, 1), after, by);
+    of.pose = pose_uncertainty(drawn, inside, after, fit, of.uncertainty, samples, frames->first,
                                frames->second);
   }
   return found;

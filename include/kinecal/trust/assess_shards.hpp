@@ -46,9 +46,11 @@ struct ShardAssessment {
 
 /// @param before   values of all parameters of the table at the start
 /// @param after    the same at the solution
-/// @param samples  of the first shard: the compared pose is evaluated at them
+/// @param drawn    the problem with some samples of all shards: the compared pose is evaluated at them
+/// @param samples  these, in its order
 [[nodiscard]] ShardAssessment assess_shards(const Shards& shards, const FreeSet& free,
                                             ParameterValues before, ParameterValues after,
+                                            const AnyProblem& drawn,
                                             std::span<const Sample> samples);
 
 }  // namespace kinecal

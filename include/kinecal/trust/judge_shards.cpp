@@ -10,7 +10,7 @@
 
 #include "kinecal/trust/assess_shards.hpp"
 #include "kinecal/trust/estimated_noise.hpp"
-#include "kinecal/trust/judge_files.ipp"
+#include "kinecal/trust/judge_files.hpp"
 #include "kinecal/trust/shard_folds.ipp"
 
 namespace kinecal {
@@ -18,23 +18,48 @@ namespace kinecal {
 namespace detail {
 namespace {
 
+/// Adds what needs samples at once, of a draw, to the assessment of all.
+void add_drawn(const Assessment& drawn, Assessment& all) {
+  Assessment whole = drawn;
+  for (std::size_t t = 0; t < std::min(whole.noise.size(), all.noise.size()); ++t) {
+    all.noise[t].repeats = whole.noise[t].repeats;
+    all.noise[t].repeats_freedom = whole.noise[t].repeats_freedom;
+    all.noise[t].along = whole.noise[t].along;
+    all.noise[t].across = whole.noise[t].across;
+    all.noise[t].own = whole.noise[t].own;
+    all.noise[t].own_freedom = whole.noise[t].own_freedom;
+  }
+  whole.observability = std::move(all.observability);
+  whole.noise = std::move(all.noise);
+  whole.parameters = std::move(all.parameters);
+  whole.at_bound = std::move(all.at_bound);
+  whole.uncertainty = std::move(all.uncertainty);
+  whole.weak = std::move(all.weak);
+  whole.folded = std::move(all.folded);
+  whole.pose = std::move(all.pose);
+  whole.rows = all.rows;
+  whole.used = all.used;
+  whole.samples = all.samples;
+  all = std::move(whole);
+}
+
 /// The procedure on samples in shards.
 class ShardProcedure {
  public:
-  ShardProcedure(ShardedCalibration& calibration, const ProcedureOptions& options)
-      : calibration_(calibration), options_(options), noise_(calibration.first) {}
+  ShardProcedure(const ShardedCalibration& calibration, const ProcedureOptions& options)
+      : calibration_(calibration), options_(options), noise_(calibration.calibration) {}
 
   [[nodiscard]] JudgedResult run() {
-    JudgedResult judged = noise_.settle(calibration_.first, [&] { return fit(); });
-    judged.judgement = judge(calibration_.first, judged.result, judged.assessments, options_.doubts,
-                             options_.refutable);
+    JudgedResult judged = noise_.settle(calibration_.calibration, [&] { return fit(); });
+    judged.judgement = judge(calibration_.calibration, judged.result, judged.assessments,
+                             options_.doubts, options_.refutable);
     judge_files(found_, calibration_.names, judged.judgement);
     return judged;
   }
 
  private:
   [[nodiscard]] const CalibrationStep& step(std::size_t s) const {
-    return calibration_.first.steps[s];
+    return calibration_.calibration.steps[s];
   }
 
   [[nodiscard]] ShardExchange exchange(const std::string& prefix) const {
@@ -54,11 +79,9 @@ class ShardProcedure {
     }
   }
 
-  /// A step's problem with the samples of a shard: the first is that of the calibration.  Few samples
-  /// are kept in memory.
+  /// A step's problem with the samples of a shard.  Few samples are kept in memory.
   [[nodiscard]] std::shared_ptr<const AnyProblem> problem(std::size_t s, int shard) {
     constexpr int kKept = 100000;  // samples
-    if (shard == 0) return {std::shared_ptr<const AnyProblem>(), step(s).problem.get()};
     const auto known = problems_.find({s, shard});
     if (known != problems_.end()) return known->second;
     std::shared_ptr<AnyProblem> made = step(s).problem->without_samples();
@@ -69,49 +92,25 @@ class ShardProcedure {
     return made;
   }
 
-  /// Solves the first shard alone.  Its samples' own poses stay where they begin: sums must not depend on which process
-  /// has solved it, or whether they were found on disk.
-  [[nodiscard]] CalibrationResult solve_first() const {
-    std::vector<std::vector<std::vector<Pose<double>>>> poses;
-    for (const CalibrationStep& step : calibration_.first.steps) {
-      poses.push_back(step.problem->poses_of_samples());
-    }
-    CalibrationResult result = calibrate(calibration_.first);
-    for (std::size_t s = 0; s < poses.size(); ++s) {
-      step(s).problem->set_poses_of_samples(std::move(poses[s]));
-    }
-    return result;
-  }
-
-  /// The result of the first shard alone: where to start.
-  [[nodiscard]] std::vector<double> start(const std::string& prefix) const {
-    const auto of_first = [&](int shard) {
-      if (shard > 0) return std::vector<double>();
-      const CalibrationResult result = solve_first();
-      const Eigen::VectorXd values =
-          result.converged ? result.table.values() : calibration_.first.table.values();
-      return std::vector<double>(values.begin(), values.end());
-    };
-    const Shards shards{nullptr, std::max(1, static_cast<int>(calibration_.names.size())),
-                        0,       0,
-                        {},      exchange(prefix)};
-    return numbers_of_shards(shards, "start", of_first).front();
-  }
-
   [[nodiscard]] JudgedResult fit() {
     set_sigmas();
     std::string prefix = "step";
-    for (const double sigma : noise_.sigmas(calibration_.first)) {
+    for (const double sigma : noise_.sigmas(calibration_.calibration)) {
       char exact[40];
       (void)std::snprintf(exact, sizeof exact, " %.17g", sigma);
       prefix += exact;
     }
-    const Eigen::VectorXd table = calibration_.first.table.values();
-    const std::vector<double> initial(table.begin(), table.end()), guess = start(prefix);
+    const Eigen::VectorXd table = calibration_.calibration.table.values();
+    const std::vector<double> initial(table.begin(), table.end());
+    std::vector<double> guess = initial;
+    if (calibration_.drawn != nullptr) {
+      const Eigen::VectorXd start = calibration_.drawn->result.table.values();
+      guess.assign(start.begin(), start.end());
+    }
     JudgedResult judged;
-    judged.result.table = calibration_.first.table;
+    judged.result.table = calibration_.calibration.table;
     std::vector<double> values = initial;
-    for (std::size_t s = 0; s < calibration_.first.steps.size(); ++s) {
+    for (std::size_t s = 0; s < calibration_.calibration.steps.size(); ++s) {
       const std::string of_step = prefix + " " + std::to_string(s) + " ";
       if (!solve(s, of_step, initial, guess, values, judged)) break;
     }
@@ -144,21 +143,25 @@ class ShardProcedure {
     solving.max_num_iterations = step(s).max_num_iterations;
     StepResult solved = solve_shards(shards, free, values, reference, solving);
     solved.name = step(s).name;
+    if (calibration_.drawn != nullptr && s < calibration_.drawn->result.steps.size()) {
+      solved.starts = calibration_.drawn->result.steps[s].starts;
+    }
     add_step(std::move(solved), free, judged.result);
     if (!judged.result.converged) return false;
-    ShardAssessment found = assess_shards(shards, free, initial, values, calibration_.samples);
+    ShardAssessment found =
+        assess_shards(shards, free, initial, values, *step(s).problem, calibration_.samples);
     found.assessment.step = step(s).name;
-    found.assessment.folded = shard_folds(shards, free, values, [this](int shard) {
-      if (shard > 0) return calibration_.read(shard);
-      return std::vector<Sample>(calibration_.samples.begin(), calibration_.samples.end());
-    });
+    found.assessment.folded = shard_folds(shards, free, values, calibration_.read);
+    if (calibration_.drawn != nullptr && s < calibration_.drawn->assessments.size()) {
+      add_drawn(calibration_.drawn->assessments[s], found.assessment);
+    }
     judged.assessments.push_back(std::move(found.assessment));
     merge_statistics(judged.result.blocks, std::move(found.blocks));
     found_ = std::move(found);
     return true;
   }
 
-  ShardedCalibration& calibration_;
+  const ShardedCalibration& calibration_;
   const ProcedureOptions& options_;
   EstimatedNoise noise_;
   std::map<std::pair<std::size_t, int>, std::shared_ptr<AnyProblem>> problems_;
@@ -168,7 +171,8 @@ class ShardProcedure {
 }  // namespace
 }  // namespace detail
 
-JudgedResult calibrate_and_judge(ShardedCalibration& calibration, const ProcedureOptions& options) {
+JudgedResult calibrate_and_judge(const ShardedCalibration& calibration,
+                                 const ProcedureOptions& options) {
   return detail::ShardProcedure(calibration, options).run();
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "kinecal/config/doubts/exchanged_joints.ipp"
 #include "kinecal/config/doubts/used_joints.hpp"
@@ -50,7 +51,8 @@ struct FurthestOutside {
 void check_offsets(const CalibrationInput& input, const ParameterTable& calibrated,
                    Diagnostics& diagnostics) {
   constexpr double kHalfTurn = 2.8;  // radians: to 20 degrees
-  const detail::UrdfText source(input.urdf_text, input.urdf);
+  std::optional<detail::UrdfText> source;
+  if (!input.urdf_text.empty()) source.emplace(input.urdf_text, input.urdf);
   for (const detail::UsedJoint& used :
        detail::used_joints(input.config, input.robot, input.samples)) {
     const Joint& joint = used.joint;
@@ -59,8 +61,11 @@ void check_offsets(const CalibrationInput& input, const ParameterTable& calibrat
     const double offset = detail::as_angle(joint, calibrated[parameter].value);
     const double change =
         detail::as_angle(joint, calibrated[parameter].value - calibrated[parameter].initial);
-    const pugi::xml_node node = source.joint(joint.name), limit = node.child("limit");
-    const SourceLocation place = source.place(limit ? limit : node);
+    SourceLocation place{input.urdf, 0};
+    if (source) {
+      const pugi::xml_node node = source->joint(joint.name), limit = node.child("limit");
+      place = source->place(limit ? limit : node);
+    }
     const std::string subject =
         fmt::format("the offset of '{}' is {}", joint.name, detail::offset_text(joint, offset));
     const detail::FurthestOutside most = detail::furthest_outside(used, offset);

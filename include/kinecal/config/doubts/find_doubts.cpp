@@ -20,9 +20,12 @@ void find_doubts(const CalibrationInput& input, Diagnostics& diagnostics) {
   const auto& [config, robot, urdf_text, urdf, samples, calibration, recorded, is_part] = input;
   const std::size_t before = diagnostics.errors.size();
   detail::check_initial_values(config, diagnostics);
-  detail::check_xacro(urdf_text, urdf, diagnostics);
-  detail::check_ignored_urdf(robot, urdf_text, urdf, diagnostics);
-  detail::check_urdf_units(config, robot, urdf_text, urdf, diagnostics);
+  const bool has_text = !urdf_text.empty();
+  if (has_text) {
+    detail::check_xacro(urdf_text, urdf, diagnostics);
+    detail::check_ignored_urdf(robot, urdf_text, urdf, diagnostics);
+    detail::check_urdf_units(config, robot, urdf_text, urdf, diagnostics);
+  }
   detail::check_weight(config, samples, diagnostics);
   if (samples.empty() || before > 0) return;  // the rest needs models that match the robot
   const std::vector<detail::UsedJoint> joints = detail::used_joints(config, robot, samples);
@@ -39,7 +42,8 @@ void find_doubts(const CalibrationInput& input, Diagnostics& diagnostics) {
   if (diagnostics.errors.size() > before) return;
   detail::check_spreads(config, robot, samples, diagnostics);
   if (diagnostics.errors.size() > before) return;
-  detail::check_rising(config, robot, urdf_text, urdf, samples, recorded, diagnostics);
+  if (has_text)
+    detail::check_rising(config, robot, urdf_text, urdf, samples, recorded, diagnostics);
 }
 
 }  // namespace kinecal

@@ -20,7 +20,7 @@ namespace kinecal {
 struct CalibrationInput {
   const Config& config;          ///< from read_config()
   const Robot& robot;            ///< from parse_urdf()
-  const std::string& urdf_text;  ///< the text of the URDF
+  const std::string& urdf_text;  ///< the text of the URDF; empty: a robot without one
   const std::string& urdf;       ///< its name in messages: its file
   std::span<const Sample>
       samples;  ///< may be empty: then the robot and the configuration are checked

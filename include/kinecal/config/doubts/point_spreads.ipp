@@ -122,7 +122,7 @@ void check_spreads(const Config& config, const Robot& robot, std::span<const Sam
   std::set<std::pair<const RecordedPoints*, const RecordedPoints*>> compared;
   for (const StepConfig& step : config.steps) {
     for (const BlockConfig& block : step.error_blocks) {
-      const BlockEntry* entry = registry().block(block.type);
+      const BlockEntry* entry = entry_of(block);
       if (entry == nullptr || entry->read_as != PointToPoint::kType) continue;
       std::vector<const RecordedPoints*> of_block;
       for (const std::string& model : block.models) {

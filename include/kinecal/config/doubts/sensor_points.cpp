@@ -40,7 +40,7 @@ std::vector<RecordedPoints> recorded_points(const Config& config, const Robot& r
   std::vector<RecordedPoints> all;
   const std::set<std::string> pixels = pixel_models(config);
   for (const ModelConfig& model : models_of(config)) {
-    const SensorEntry* entry = registry().sensor(model.type);
+    const SensorEntry* entry = entry_of(model);
     if (entry == nullptr || !robot.has_link(model.frame)) continue;
     RecordedPoints recorded{model,
                             make_chain(robot, config.base_link, model.frame),
@@ -153,7 +153,7 @@ void check_sensor_points(const Config& config, const Robot& robot, std::span<con
   for (const RecordedPoints& recorded : all) {
     if (report_absurd_points(recorded, samples, diagnostics)) continue;
     check_frozen(recorded, samples, diagnostics);
-    const SensorEntry* entry = registry().sensor(recorded.model.type);
+    const SensorEntry* entry = entry_of(recorded.model);
     if (recorded.in_metres) {
       check_distances(recorded, reach, samples, diagnostics);
       if (measures_depth(*entry->sensor)) {

@@ -50,7 +50,7 @@ std::vector<ModelConfig> models_of(const Config& config) {
 std::set<std::string> pixel_models(const Config& config) {
   std::set<std::string> names;
   for (const ModelConfig& model : models_of(config)) {
-    const SensorEntry* entry = registry().sensor(model.type);
+    const SensorEntry* entry = entry_of(model);
     const bool delivers = entry != nullptr && (entry->sensor->delivers(Quantity::point) ||
                                                entry->sensor->delivers(Quantity::pose));
     if (!delivers) names.insert(model.name);

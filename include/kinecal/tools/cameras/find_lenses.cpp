@@ -69,7 +69,7 @@ void bound_outliers(Config& config) {
   constexpr double kFar = 3.0;  // pixels, or sigma
   for (StepConfig& step : config.steps) {
     for (BlockConfig& block : step.error_blocks) {
-      const BlockEntry* entry = registry().block(block.type);
+      const BlockEntry* entry = entry_of(block);
       const bool is_of_pixels = entry != nullptr && entry->read_as == PointToPixel::kType;
       if (is_of_pixels && block.loss.type == "none") block.loss = {"huber", kFar};
     }

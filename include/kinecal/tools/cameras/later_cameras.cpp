@@ -96,7 +96,7 @@ bool prepare_later_cameras(const Robot& robot, const Config& config,
   }
   if (!is_good()) return false;
   for (const ModelConfig& camera : detail::models_of(config)) {
-    const SensorEntry* entry = registry().sensor(camera.type);
+    const SensorEntry* entry = entry_of(camera);
     const CameraInfo* info = detail::info_of(camera.name, first);
     if (entry == nullptr || !entry->has_lens || info == nullptr) continue;
     detail::take_first(camera.name, *info, samples);

@@ -24,7 +24,7 @@ struct TargetPair {
   std::vector<TargetPair> pairs;
   for (const StepConfig& step : config.steps) {
     for (const BlockConfig& block : step.error_blocks) {
-      const BlockEntry* entry = registry().block(block.type);
+      const BlockEntry* entry = entry_of(block);
       if (entry == nullptr || entry->read_as != PointToPixel::kType) continue;
       TargetPair pair;
       for (const ModelConfig& model : step.models) {

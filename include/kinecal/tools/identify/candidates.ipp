@@ -59,7 +59,7 @@ struct ModelChain {
 /// the polynomial of a depth camera, those that the step frees.
 [[nodiscard]] inline std::vector<std::string> sensor_parameters(const StepConfig& step,
                                                                 const ModelConfig& model) {
-  const SensorEntry* entry = registry().sensor(model.type);
+  const SensorEntry* entry = entry_of(model);
   if (entry == nullptr) return {};
   const std::shared_ptr<const AnySensor> sensor = sensor_of(model);
   const bool has_lens = entry->has_lens && model.image != ImageKind::rectified;

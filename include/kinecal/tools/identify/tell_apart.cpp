@@ -92,7 +92,7 @@ Explanations free_explanations(const Config& config, const Robot& robot,
 bool sees_everywhere(const Config& config) {
   return std::all_of(config.steps.front().models.begin(), config.steps.front().models.end(),
                      [](const ModelConfig& model) {
-                       const SensorEntry* entry = registry().sensor(model.type);
+                       const SensorEntry* entry = entry_of(model);
                        return entry != nullptr && entry->sensor->parameters().empty();
                      });
 }

@@ -123,7 +123,7 @@ class PoseSampling {
   }
 
   [[nodiscard]] Vector3<double> measured(const Vector3<double>& p) const {
-    if (measures_depth(*registry().sensor(models_.camera->type)->sensor)) return p;
+    if (measures_depth(*entry_of(*models_.camera)->sensor)) return p;
     const Eigen::Vector2d at = pixel(p);
     return {at.x(), at.y(), 0.0};
   }

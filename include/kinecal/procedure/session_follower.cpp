@@ -1,6 +1,6 @@
 // Definitions of session_follower.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/config/capture/session_follower.hpp"
+#include "kinecal/procedure/session_follower.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,12 @@
 
 namespace kinecal {
 
-SessionFollower::SessionFollower(Config config, Robot robot, const std::string& frame)
-    : config_(std::move(config)), robot_(std::move(robot)), frame_(frame) {
+SessionFollower::SessionFollower(Config config, Robot robot, const std::string& frame,
+                                 std::string urdf_text)
+    : config_(std::move(config)),
+      robot_(std::move(robot)),
+      frame_(frame),
+      urdf_text_(std::move(urdf_text)) {
   if (!config_.per_sample.empty()) {
     throw InputError(config_.per_sample.front().place.str() +
                      ": per_sample: a session cannot be followed while a target has a pose of its "
@@ -105,13 +109,9 @@ FollowedState SessionFollower::add(const Sample& captured, std::span<const Sampl
   return followed;
 }
 
-SessionCalibration SessionFollower::calibrate_all() const {
-  Diagnostics diagnostics;
-  SessionCalibration all{assemble(config_, robot_, samples_, diagnostics), {}, {}};
-  diagnostics.throw_if_errors();
-  all.judged = calibrate_and_judge(all.calibration, samples_);
-  all.samples = used_samples(all.judged, samples_);
-  return all;
+CalibratedRobot SessionFollower::calibrate_all() const {
+  return calibrate_robot(CalibrationSetup{
+      .robot = robot_, .config = config_, .samples = samples_, .urdf_text = urdf_text_});
 }
 
 Sample at_pose(const CapturePose& pose, const Sample& sample) {

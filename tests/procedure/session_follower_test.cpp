@@ -1,4 +1,4 @@
-#include "kinecal/config/capture/session_follower.hpp"
+#include "kinecal/procedure/session_follower.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

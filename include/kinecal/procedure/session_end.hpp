@@ -17,7 +17,7 @@
 #include <span>
 #include <string>
 
-#include "kinecal/config/capture/session_follower.hpp"
+#include "kinecal/procedure/session_follower.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/judge.hpp"
 
@@ -38,7 +38,7 @@ struct SessionResult {
                                     std::span<const Sample> ahead);
 
 /// The same of a session's calibration.
-[[nodiscard]] std::string why_go_on(const Accuracy& wanted, const SessionCalibration& all,
+[[nodiscard]] std::string why_go_on(const Accuracy& wanted, const CalibratedRobot& all,
                                     std::span<const Sample> ahead);
 
 }  // namespace kinecal

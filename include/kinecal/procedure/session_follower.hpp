@@ -17,7 +17,7 @@
 
 #include "kinecal/capture/capture_pose.hpp"
 #include "kinecal/config/config.hpp"
-#include "kinecal/trust/calibrate_and_judge.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
 #include "kinecal/trust/online.hpp"
 
 namespace kinecal {
@@ -29,24 +29,19 @@ struct FollowedState {
   std::string problem;           ///< why the sample is unusable; empty if it is usable
 };
 
-/// The calibration of all samples of a session so far.
-struct SessionCalibration {
-  Calibration calibration;
-  JudgedResult judged;
-  std::vector<Sample> samples;  ///< those that the result uses
-};
-
 /// The joint positions of a pose; joints that it does not move are where they are in a sample.
 [[nodiscard]] Sample at_pose(const CapturePose& pose, const Sample& sample);
 
 /// Follows a session.
 class SessionFollower {
  public:
+  /// @param urdf_text  of the robot: see CalibrationSetup
   /// @param frame  link or free frame whose pose is wanted; empty: that of the first error block of
   ///               the last step
   /// @throws InputError  if the configuration does not match the robot or has `per_sample`, or the robot has no such
   ///                     link, with the nearest name
-  SessionFollower(Config config, Robot robot, const std::string& frame = {});
+  SessionFollower(Config config, Robot robot, const std::string& frame = {},
+                  std::string urdf_text = {});
   SessionFollower(const SessionFollower&) = delete;
   SessionFollower& operator=(const SessionFollower&) = delete;
   ~SessionFollower() = default;
@@ -57,7 +52,7 @@ class SessionFollower {
 
   /// Calibrates and judges all samples so far.
   /// @throws InputError, std::invalid_argument  if they do not suffice
-  [[nodiscard]] SessionCalibration calibrate_all() const;
+  [[nodiscard]] CalibratedRobot calibrate_all() const;
 
   /// The frame whose pose is meant, and the one in which it is meant; empty before it is known.
   [[nodiscard]] std::pair<std::string, std::string> frames() const;
@@ -71,6 +66,7 @@ class SessionFollower {
   Config config_;
   Robot robot_;
   std::string frame_;
+  std::string urdf_text_;
   std::unique_ptr<AnyProblem> problem_;  ///< of the last step, without samples
   std::vector<Sample> samples_;          ///< all of the session that suit the configuration
   std::optional<OnlineCalibration> online_;

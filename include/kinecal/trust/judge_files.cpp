@@ -1,21 +1,18 @@
-// Files that do not go with the others: for judge_shards.cpp.
+// Definitions of judge_files.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
+#include "kinecal/trust/judge_files.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <string>
-#include <vector>
 
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/text/reading.hpp"
-#include "kinecal/trust/assess_shards.hpp"
-#include "kinecal/trust/judge.hpp"
 
 namespace kinecal::detail {
 
-/// Files whose residuals are larger than those of the others.
-inline void judge_misfits(const std::vector<double>& misfits, const std::vector<std::string>& names,
-                          Judgement& judgement) {
+void judge_misfits(const std::vector<double>& misfits, const std::vector<std::string>& names,
+                   Judgement& judgement) {
   constexpr double kMuch = 2.0;
   if (misfits.size() < 3) return;
   std::vector<double> sorted = misfits;
@@ -30,10 +27,25 @@ inline void judge_misfits(const std::vector<double>& misfits, const std::vector<
   }
 }
 
-/// Judges what the samples of each file show by themselves.
-/// @param names  of the files
-inline void judge_files(const ShardAssessment& found, const std::vector<std::string>& names,
-                        Judgement& judgement) {
+std::vector<double> misfits_of(const AnyProblem& problem, ParameterValues values,
+                               std::span<const int> files) {
+  std::vector<double> squares, rows;
+  const auto visit = [&](int t, int sample, const TermResiduals& of) {
+    const auto file = static_cast<std::size_t>(files[static_cast<std::size_t>(sample)]);
+    if (file >= squares.size()) squares.resize(file + 1, 0.0), rows.resize(file + 1, 0.0);
+    const double weight = problem.term(t).weight;
+    squares[file] += (weight * of.factor.cwiseProduct(of.residual)).squaredNorm();
+    rows[file] += static_cast<double>(of.residual.size()) - of.used.sum();
+  };
+  (void)evaluate(problem, values, nullptr, visit);
+  for (std::size_t file = 0; file < squares.size(); ++file) {
+    squares[file] = std::sqrt(squares[file] / std::max(1.0, rows[file]));
+  }
+  return squares;
+}
+
+void judge_files(const ShardAssessment& found, const std::vector<std::string>& names,
+                 Judgement& judgement) {
   judge_misfits(found.misfits, names, judgement);
   const auto name = [&](int shard) { return names[static_cast<std::size_t>(shard)]; };
   for (const FarFeature& far : found.far) {  // a fit of this file would leave out its sample

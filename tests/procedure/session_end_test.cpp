@@ -1,4 +1,4 @@
-#include "kinecal/config/capture/session_end.hpp"
+#include "kinecal/procedure/session_end.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

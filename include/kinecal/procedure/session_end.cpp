@@ -1,13 +1,13 @@
 // Definitions of session_end.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/config/capture/session_end.hpp"
+#include "kinecal/procedure/session_end.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/config/capture/open_parameters.ipp"
+#include "kinecal/procedure/open_parameters.ipp"
 #include "kinecal/text/reading.hpp"
 #include "kinecal/trust/measured_numbers.hpp"
 #include "kinecal/trust/pose_elsewhere.hpp"
@@ -113,13 +113,13 @@ std::string why_go_on(const Accuracy& wanted, const SessionResult& result,
   return why.empty() ? detail::still_open(result, ahead) : why;
 }
 
-std::string why_go_on(const Accuracy& wanted, const SessionCalibration& all,
+std::string why_go_on(const Accuracy& wanted, const CalibratedRobot& all,
                       std::span<const Sample> ahead) {
-  const JudgedResult& judged = all.judged;
+  const JudgedResult& judged = all;
   if (judged.assessments.empty()) return judged.result.termination;
   const Eigen::VectorXd values = judged.result.table.values();
   return why_go_on(wanted,
-                   {*all.calibration.steps.back().problem,
+                   {*all.setup.calibration.steps.back().problem,
                     {values.data(), static_cast<std::size_t>(values.size())},
                     judged.assessments.back(),
                     judged.judgement,

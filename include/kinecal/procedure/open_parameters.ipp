@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/config/capture/session_end.hpp"
+#include "kinecal/procedure/session_end.hpp"
 #include "kinecal/study/sample_design.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
 

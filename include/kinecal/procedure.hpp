@@ -1,0 +1,11 @@
+// Umbrella header of procedure/: the whole of a calibration, whichever way you come in.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/procedure/calibrate_crate.hpp"
+#include "kinecal/procedure/calibrate_log.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
+#include "kinecal/procedure/calibrated_files.hpp"
+#include "kinecal/procedure/crate_config.hpp"
+#include "kinecal/procedure/session_end.hpp"
+#include "kinecal/procedure/session_follower.hpp"

@@ -1,0 +1,290 @@
+// Definitions of calibrate_robot.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/procedure/calibrate_robot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/doubts/find_doubts.hpp"
+#include "kinecal/config/doubts/judge_causes.hpp"
+#include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/config/hold_parameters.hpp"
+#include "kinecal/tools/cameras/prepare_cameras.hpp"
+#include "kinecal/tools/identify/another_robot.hpp"
+#include "kinecal/tools/identify/open_config.hpp"
+#include "kinecal/tools/identify/would_help.hpp"
+#include "kinecal/trust/judge_files.hpp"
+#include "kinecal/trust/speed_limit.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// True if a lens is to be found.
+[[nodiscard]] bool searches_lenses(const Config& config) {
+  const std::vector<ModelConfig> models = models_of(config);
+  return std::any_of(models.begin(), models.end(),
+                     [](const ModelConfig& model) { return model.lens == kAnyLens; });
+}
+
+/// The samples without those that are excluded.
+/// @param exclude  numbers, from 1
+[[nodiscard]] std::vector<Sample> without(const std::vector<Sample>& samples,
+                                          const std::vector<int>& exclude) {
+  const std::set<int> numbers(exclude.begin(), exclude.end());
+  std::vector<Sample> others;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!numbers.contains(static_cast<int>(i) + 1)) others.push_back(samples[i]);
+  }
+  return others;
+}
+
+/// Assembles the problems, and doubts the input.
+void assemble(PreparedCalibration& prepared, const std::vector<int>& exclude) {
+  prepared.calibration =
+      kinecal::assemble(*prepared.config, prepared.robot, prepared.samples, prepared.diagnostics);
+  const auto doubt = [&](std::span<const Sample> samples) {
+    find_doubts({*prepared.config, prepared.robot, prepared.urdf_text, prepared.urdf, samples,
+                 prepared.calibration, prepared.recorded, prepared.is_part},
+                prepared.diagnostics);
+  };
+  exclude.empty() ? doubt(prepared.samples) : doubt(without(prepared.samples, exclude));
+}
+
+/// What a search begins with: the unknown poses are free, and a note says that there is a search.
+/// @param is_proposed  the samples suggest the configuration
+void leave_open(PreparedCalibration& prepared, Search search, bool is_proposed) {
+  Config& config = *prepared.config;
+  prepared.is_searched = true;
+  if (search == Search::if_open) {
+    prepared.diagnostics.notes.push_back(
+        (is_proposed ? "there is no --config; the samples suggest one"
+                     : config.place.file + ": nothing is free") +
+        ": what these samples support is searched for, as 'kinecal identify' does");
+  }
+  if (config.steps.size() == 1 && frees_nothing(config)) {
+    free_unknown_poses(config, prepared.robot, prepared.samples);
+  }
+}
+
+/// "raw" or "rectified", by camera, where it was chosen.
+[[nodiscard]] std::map<std::string, std::string> images_of(const Config& config) {
+  std::map<std::string, std::string> images;
+  for (const ModelConfig& model : models_of(config)) {
+    if (model.image == ImageKind::automatic) continue;
+    images[model.name] = model.image == ImageKind::raw ? "raw" : "rectified";
+  }
+  return images;
+}
+
+/// The lens of each camera of raw images, as far as it is known.
+[[nodiscard]] std::map<std::string, std::string> lenses_of(const Config& config) {
+  std::map<std::string, std::string> lenses;
+  for (const ModelConfig& model : models_of(config)) {
+    if (!model.lens.empty() && model.image != ImageKind::rectified) lenses[model.name] = model.lens;
+  }
+  return lenses;
+}
+
+[[nodiscard]] ProcedureOptions procedure_of(const PreparedCalibration& prepared,
+                                            const CalibrationOptions& options) {
+  ProcedureOptions procedure{.solving = options.solving,
+                             .folds = options.folds,
+                             .keep_outliers = options.keep_outliers,
+                             .exclude = {},
+                             .doubts = prepared.diagnostics.doubts,
+                             .refutable = prepared.diagnostics.refutable,
+                             .progress = options.progress};
+  for (const int number : options.exclude) {
+    if (number < 1 || number > std::ssize(prepared.samples)) {
+      throw InputError(fmt::format("--exclude: no sample {}; there are samples 1 to {}", number,
+                                   prepared.samples.size()));
+    }
+    procedure.exclude[number - 1] = "--exclude";
+  }
+  return procedure;
+}
+
+/// Each sample with its own poses where the result has them.
+void take_own_poses(const AnyProblem& problem, std::vector<Sample>& samples) {
+  for (std::size_t s = 0; s < problem.poses_of_samples().size(); ++s) {
+    for (std::size_t f = 0; f < problem.own_poses().size(); ++f) {
+      samples[s].poses[problem.own_poses()[f]] = problem.poses_of_samples()[s][f];
+    }
+  }
+}
+
+/// The file of a sample: its source without the line; empty: unknown.
+[[nodiscard]] std::string file_of(const Sample& sample) {
+  const std::size_t colon = sample.source.rfind(':');
+  return colon == std::string::npos ? "" : sample.source.substr(0, colon);
+}
+
+/// Judges files that do not go with the others.
+void judge_files(const Calibration& calibration, std::span<const Sample> samples,
+                 JudgedResult& judged) {
+  if (!judged.result.converged) return;
+  std::vector<std::string> names;
+  std::vector<int> files;
+  for (const Sample& sample : samples) {
+    const std::string file = file_of(sample);
+    if (names.empty() || names.back() != file) names.push_back(file);
+    files.push_back(static_cast<int>(names.size()) - 1);
+  }
+  const Eigen::VectorXd values = judged.result.table.values();
+  judge_misfits(misfits_of(*calibration.steps.back().problem,
+                           {values.data(), static_cast<std::size_t>(values.size())}, files),
+                names, judged.judgement);
+}
+
+/// Solves and judges what is assembled.
+void fit(const CalibrationOptions& options, CalibratedRobot& calibrated) {
+  PreparedCalibration& setup = calibrated.setup;
+  setup.diagnostics.throw_if_errors();
+  JudgedResult judged =
+      calibrate_and_judge(setup.calibration, setup.samples, procedure_of(setup, options));
+  calibrated.samples = used_samples(judged, setup.samples);
+  take_own_poses(*setup.calibration.steps.back().problem, calibrated.samples);
+  judge_files(setup.calibration, calibrated.samples, judged);
+  calibrated.left_out_samples.clear();
+  for (const LeftOutSample& left : judged.left_out) {
+    calibrated.left_out_samples.push_back(setup.samples[static_cast<std::size_t>(left.number - 1)]);
+  }
+  static_cast<Findings&>(calibrated) =
+      findings_of(setup.robot, setup.calibration, std::move(judged), calibrated.samples);
+  calibrated.images = images_of(*setup.config);
+  calibrated.lenses = lenses_of(*setup.config);
+  calibrated.has_own_poses = !setup.config->per_sample.empty();
+}
+
+/// Searches, and calibrates with what was found; again without samples that do not fit.
+void search_and_fit(const CalibrationOptions& options, CalibratedRobot& calibrated) {
+  PreparedCalibration& setup = calibrated.setup;
+  const Config open = *setup.config;
+  const Diagnostics before = setup.diagnostics;
+  const auto run = [&](std::span<const Sample> samples) {
+    calibrated.robot_search =
+        search_robot(open, setup.robot, samples, {options.geometry_only, options.hold});
+    setup.config = calibrated.robot_search->config;
+    if (frees_nothing(*setup.config)) return;
+    setup.diagnostics = before;
+    assemble(setup, options.exclude);
+    fit(options, calibrated);
+  };
+  run(setup.samples);
+  if (!calibrated.left_out_samples.empty()) {
+    const std::vector<Sample> used = used_samples(calibrated, setup.samples);
+    run(used);
+  }
+  calibrated.search = reported(*calibrated.robot_search);
+  if (frees_nothing(*setup.config)) {
+    calibrated.robot = setup.robot.name();
+    calibrated.judgement.add(Grade::do_not_use,
+                             "nothing is free, and these samples support no parameter");
+  }
+  if (const std::string why = another_robot(*calibrated.robot_search); !why.empty()) {
+    calibrated.judgement.add_causes(Grade::do_not_use, {why});
+  }
+}
+
+/// How fast is still good, if the configuration has a lag.
+[[nodiscard]] std::vector<std::string> how_fast(const CalibratedRobot& calibrated) {
+  const CalibrationResult& result = calibrated.result;
+  const CalibrationStep& last = calibrated.setup.calibration.steps.back();
+  const Eigen::VectorXd values = result.table.values();
+  std::vector<std::string> sentences;
+  for (const SpeedLimit& limit :
+       speed_limits(*last.problem, last.free,
+                    {values.data(), static_cast<std::size_t>(values.size())}, calibrated.samples)) {
+    sentences.push_back(limit.text());
+  }
+  return sentences;
+}
+
+}  // namespace
+
+CalibratedRobot solve_and_judge(PreparedCalibration prepared, const CalibrationOptions& options) {
+  prepared.diagnostics.throw_if_errors();
+  CalibratedRobot calibrated;
+  calibrated.setup = std::move(prepared);
+  calibrated.setup.is_searched ? search_and_fit(options, calibrated) : fit(options, calibrated);
+  return calibrated;
+}
+
+void explain(CalibratedRobot& calibrated) {
+  const PreparedCalibration& setup = calibrated.setup;
+  Findings& findings = calibrated;
+  if (setup.calibration.steps.empty()) return;  // nothing is free
+  judge_causes({*setup.config, setup.robot, setup.urdf_text, setup.urdf, calibrated.samples,
+                setup.calibration},
+               findings);
+  if (!calibrated.robot_search) {  // else it is freed already
+    const WouldHelp help = would_help(*setup.config, setup.robot, calibrated.samples,
+                                      setup.calibration, findings.result);
+    findings.helps = help.sentences;
+    findings.helps_leave = help.left;
+    judge_help(help, findings.judgement);
+  }
+  if (findings.result.converged) findings.speeds = how_fast(calibrated);
+}
+
+}  // namespace detail
+
+PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& options,
+                            Diagnostics diagnostics) {
+  PreparedCalibration prepared{std::move(setup)};
+  prepared.diagnostics = std::move(diagnostics);
+  Diagnostics& found = prepared.diagnostics;
+  const std::size_t before = found.errors.size();
+  const auto is_good = [&] { return found.errors.size() == before; };
+  const auto check_only = [&] {
+    if (prepared.config) (void)assemble(*prepared.config, prepared.robot, {}, found);
+    return std::move(prepared);
+  };
+  if (before > 0) return check_only();
+  const bool is_proposed = !prepared.config;
+  if (is_proposed) {
+    try {
+      prepared.config = config_from_samples(prepared.robot, prepared.samples);
+    } catch (const InputError& error) {
+      found.errors.emplace_back(error.what());
+      return prepared;
+    }
+  }
+  Config& config = *prepared.config;
+  const bool is_open = options.search == Search::always || (options.search == Search::if_open &&
+                                                            (is_proposed || frees_nothing(config)));
+  const bool waits = detail::searches_lenses(config);  // what is free is not known yet
+  if (!is_open && !waits) hold_parameters(config, options.hold, found);
+  if (!is_good()) return check_only();
+  if (prepared.recorded == Recorded::before) {
+    add_rising(rising_of(prepared.urdf_text, prepared.urdf), prepared.samples);
+  }
+  prepared.decides_cameras = waits || !config.per_sample.empty();
+  if (!prepare_cameras(prepared.robot, config, prepared.samples, found)) return prepared;
+  if (!is_open && waits) hold_parameters(config, options.hold, found);
+  if (!is_good()) return prepared;
+  is_open ? detail::leave_open(prepared, options.search, is_proposed)
+          : detail::assemble(prepared, options.exclude);
+  return prepared;
+}
+
+CalibratedRobot calibrate_robot(PreparedCalibration prepared, const CalibrationOptions& options) {
+  return detail::as_input_error([&] {
+    CalibratedRobot calibrated = detail::solve_and_judge(std::move(prepared), options);
+    detail::explain(calibrated);
+    return calibrated;
+  });
+}
+
+CalibratedRobot calibrate_robot(CalibrationSetup setup, const CalibrationOptions& options) {
+  return calibrate_robot(prepare(std::move(setup), options), options);
+}
+
+}  // namespace kinecal

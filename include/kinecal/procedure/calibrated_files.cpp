@@ -1,0 +1,44 @@
+// Definitions of calibrated_files.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/procedure/calibrated_files.hpp"
+
+#include "kinecal/report/json.hpp"
+#include "kinecal/report/residuals_csv.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// The URDF, calibration.yaml and camera files.
+[[nodiscard]] std::vector<OutputFile> robot_files_of(const CalibratedRobot& calibrated,
+                                                     ResultFileOptions options) {
+  const PreparedCalibration& setup = calibrated.setup;
+  const Findings& findings = calibrated;
+  if (setup.urdf_text.empty()) {
+    throw InputError(setup.urdf +
+                     ": its text is not known, so a calibrated URDF cannot be written");
+  }
+  for (const int i : findings.result.calibrated) {
+    if (const auto deviation = findings.deviation(i)) options.deviations[i] = *deviation;
+  }
+  return result_files(setup.robot, setup.urdf_text, setup.urdf, setup.calibration, findings.result,
+                      calibrated.samples, options);
+}
+
+}  // namespace
+}  // namespace detail
+
+std::vector<OutputFile> calibrated_files(const CalibratedRobot& calibrated,
+                                         ResultFileOptions options) {
+  std::vector<OutputFile> files = detail::robot_files_of(calibrated, std::move(options));
+  files.push_back({"report.json", json_report(calibrated)});
+  files.push_back({"residuals.csv", residuals_csv(calibrated.setup.calibration, calibrated)});
+  return files;
+}
+
+std::string calibrated_urdf(const CalibratedRobot& calibrated, const ResultFileOptions& options) {
+  return detail::robot_files_of(calibrated, options).front().content;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,59 @@
+// Definitions of crate_config.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/procedure/crate_config.hpp"
+
+#include <algorithm>
+
+namespace kinecal::detail {
+
+std::string loss_name(LossType type) {
+  switch (type) {
+    case LossType::huber:
+      return "huber";
+    case LossType::cauchy:
+      return "cauchy";
+    case LossType::tukey:
+      return "tukey";
+    case LossType::none:
+      break;
+  }
+  return "none";
+}
+
+std::map<std::string, double> default_numbers(const std::string& type, double scale) {
+  std::map<std::string, double> numbers;
+  const BlockEntry* entry = registry().block(type);
+  if (entry == nullptr) return numbers;
+  numbers.insert(entry->numbers.begin(), entry->numbers.end());
+  if (numbers.contains("scale")) numbers["scale"] = scale;
+  return numbers;
+}
+
+void add_free(const std::string& name, const std::string& frame, StepConfig& step) {
+  if (frame.empty()) {
+    step.free_params.push_back({name, step.place});
+    return;
+  }
+  auto free = std::find_if(step.free_frames.begin(), step.free_frames.end(),
+                           [&](const FreeFrameConfig& one) { return one.name == frame; });
+  if (free == step.free_frames.end()) {
+    free = step.free_frames.insert(step.free_frames.end(), {frame, {}, step.place});
+  }
+  for (std::size_t axis = 0; axis < kFrameAxes.size(); ++axis) {
+    if (name == parameter_name(frame, kFrameAxes[axis])) free->axes[axis] = true;
+  }
+}
+
+void add_initial_values(const ParameterTable& table, StepConfig& step) {
+  constexpr double kUnbounded = 1e300;
+  for (const Parameter& parameter : table) {
+    if (parameter.value != 0.0) {
+      step.initial_values.push_back({parameter.name, parameter.value, step.place});
+    }
+    if (parameter.lower > -kUnbounded || parameter.upper < kUnbounded) {
+      step.bounds.push_back({parameter.name, parameter.lower, parameter.upper, step.place});
+    }
+  }
+}
+
+}  // namespace kinecal::detail
