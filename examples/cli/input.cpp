@@ -236,18 +236,15 @@ void print_or_throw(const Diagnostics& diagnostics) {
 }
 
 void print(const Diagnostics& diagnostics) {
-  for (const std::string& note : diagnostics.notes) {
-    say(stderr, "note: {}\n", note);
-  }
-  for (const std::string& warning : diagnostics.warnings) {
-    say(stderr, "warning: {}\n", warning);
-  }
-  for (const std::string& error : diagnostics.errors) {
-    say(stderr, "error: {}\n", error);
-  }
-  for (const std::string& doubt : diagnostics.doubts) {
-    say(stderr, "doubt: {}\n", doubt);
-  }
+  const auto print_each = [](const char* kind, const std::vector<std::string>& messages) {
+    for (const std::string& message : messages) {
+      say(stderr, "{}: {}\n", kind, with_hanging_lines(message));
+    }
+  };
+  print_each("note", diagnostics.notes);
+  print_each("warning", diagnostics.warnings);
+  print_each("error", diagnostics.errors);
+  print_each("doubt", diagnostics.doubts);
 }
 
 }  // namespace kinecal::cli

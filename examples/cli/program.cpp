@@ -1120,7 +1120,7 @@ int run_program(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "error: %s\n", printable(e.what()).c_str());
+    std::fprintf(stderr, "error: %s\n", printable(cli::with_hanging_lines(e.what())).c_str());
   }
   return cli::kBadInput;
 }
