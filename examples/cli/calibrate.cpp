@@ -299,7 +299,7 @@ int calibrate(const CalibrateOptions& options) {
                                      findings, fitted.samples, how));
     const RobotFiles others =
         robot_files(options, input, findings.result.table, files.front().content);
-    folder->write(files);
+    folder->write(files, options.force ? Existing::replaced : Existing::kept);
     write(others);
   }
   const double writing = seconds_since(start) - reading - fitting;
