@@ -18,7 +18,6 @@
 #include "kinecal/report.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
-#include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/identify/would_help.hpp"
 #include "kinecal/trust/speed_limit.hpp"
 #include "output.hpp"
@@ -159,13 +158,13 @@ SolveOptions solve_options(const CalibrateOptions& options) {
 }
 
 /// The inputs as `kinecal plan` takes them; empty if it needs more: a URDF, or intrinsics.
-std::string inputs_of_plan(const CalibrateOptions& options, const Input& input) {
+ShellCommand inputs_of_plan(const CalibrateOptions& options, const Input& input) {
   InputOptions of = options;
   if (input.is_searched && !options.output.empty()) {
     of.config = (std::filesystem::path(options.output) / kConfigCopy).string();
   }
   const bool is_complete = !of.urdf.empty() && !of.config.empty() && of.cameras.empty();
-  return is_complete ? input_options(of) : "";
+  return is_complete ? input_options(of) : ShellCommand();
 }
 
 /// Checks before the work begins that the results can be written.

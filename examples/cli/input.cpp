@@ -18,7 +18,6 @@
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
-#include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/cameras/later_cameras.hpp"
 #include "kinecal/tools/cameras/prepare_cameras.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
@@ -218,14 +217,24 @@ Input read_input(const InputOptions& options, const Input* first) {
   return input;
 }
 
-std::string input_options(const InputOptions& options) {
-  std::string text;
-  if (!options.urdf.empty()) text += " --urdf " + shell_word(options.urdf);
-  if (!options.config.empty()) text += " --config " + shell_word(options.config);
-  if (!options.samples.empty()) text += " --samples";
-  for (const std::string& file : options.samples) text += " " + shell_word(file);
-  for (const std::string& camera : options.cameras) text += " --camera " + shell_word(camera);
-  return text.empty() ? text : text.substr(1);
+ShellCommand input_options(const InputOptions& options) {
+  ShellCommand words;
+  if (!options.urdf.empty()) words.add_option("--urdf", {options.urdf});
+  if (!options.config.empty()) words.add_option("--config", {options.config});
+  words.add_option("--samples", options.samples);
+  for (const std::string& camera : options.cameras) words.add_option("--camera", {camera});
+  return words;
+}
+
+ShellCommand calibrate_command(const InputOptions& inputs) {
+  return ShellCommand{"kinecal", "calibrate"}
+      .add(input_options(inputs))
+      .add({"--output", "calibrated"});
+}
+
+ShellCommand convert_command(const std::string& table, const std::string& columns) {
+  return ShellCommand{"kinecal", "convert", shell_file(table), "samples.yaml"}.add_option(
+      "--columns", {columns});
 }
 
 void print_or_throw(const Diagnostics& diagnostics) {
