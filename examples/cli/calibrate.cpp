@@ -17,7 +17,6 @@
 #include "kinecal/report.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
-#include "kinecal/text/shell_word.hpp"
 #include "output.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
@@ -156,13 +155,13 @@ SolveOptions solve_options(const CalibrateOptions& options) {
 }
 
 /// The inputs as `kinecal plan` takes them; empty if it needs more: a URDF, or intrinsics.
-std::string inputs_of_plan(const CalibrateOptions& options, const InputTexts& texts) {
+ShellCommand inputs_of_plan(const CalibrateOptions& options, const InputTexts& texts) {
   InputOptions of = options;
   if (!texts.found_config.empty() && !options.output.empty()) {
     of.config = (std::filesystem::path(options.output) / kConfigCopy).string();
   }
   const bool is_complete = !of.urdf.empty() && !of.config.empty() && of.cameras.empty();
-  return is_complete ? input_options(of) : "";
+  return is_complete ? input_options(of) : ShellCommand();
 }
 
 /// Checks before the work begins that the results can be written.
@@ -269,7 +268,7 @@ int calibrate(const CalibrateOptions& options) {
     files = with_copies(options, texts, calibrated_files(calibrated, how));
     const RobotFiles others =
         robot_files(options, robot, texts, findings.result.table, files.front().content);
-    folder->write(files);
+    folder->write(files, options.force ? Existing::replaced : Existing::kept);
     write(others);
   }
   const double writing = seconds_since(start) - reading - fitting;

@@ -220,9 +220,9 @@ CalibrateOptions calibration_of(const CaptureOptions& options) {
   calibrating.output = options.result;
   calibrating.force = options.force;
   if (!options.report.empty()) calibrating.reports = {options.report};
-  calibrating.command =
-      fmt::format("kinecal calibrate --urdf {} --config {} --samples {} --output {}", options.urdf,
-                  options.calibrate, options.output, options.result);
+  calibrating.command = ShellCommand{"kinecal", "calibrate"}
+                            .add(input_options(calibrating))
+                            .add_option("--output", {options.result});
   return calibrating;
 }
 

@@ -8,6 +8,7 @@
 
 #include "kinecal/config/config.hpp"
 #include "kinecal/config/doubts/rising.hpp"
+#include "kinecal/text/shell_command.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {
@@ -53,9 +54,9 @@ struct ResultOptions : InputOptions {
 
 struct CalibrateOptions : ResultOptions {
   std::vector<std::string>
-      reports;               ///< files: a page if it ends in .html, else JSON; whatever the verdict
-  std::string command = {};  ///< as the user typed it, for the report
-  std::string scene;         ///< MCAP for viewers; whatever the verdict
+      reports;  ///< files: a page if it ends in .html, else JSON; whatever the verdict
+  ShellCommand command = {};            ///< as the user typed it, for the report
+  std::string scene;                    ///< MCAP for viewers; whatever the verdict
   std::vector<std::string> mesh_paths;  ///< where the URDF's packages may be
   bool keep_outliers = false;           ///< use samples that do not fit the others
   bool dry_run = false;
@@ -121,7 +122,7 @@ struct IdentifyOptions : InputOptions {
   bool geometry_only = false;              ///< no joint models
   bool force = false;                      ///< replace it
   std::vector<std::string> reports;        ///< files: a page if it ends in .html, else JSON
-  std::string command = {};                ///< as the user typed it, for the report
+  ShellCommand command = {};               ///< as the user typed it, for the report
   std::vector<std::string> mesh_paths;     ///< where the URDF's packages may be
 };
 
@@ -226,7 +227,7 @@ struct StudyFiles {
   std::string target;                ///< empty: the scene's
   int seed = 0;                      ///< zero: the scene's
   std::vector<std::string> tell_apart = {};  ///< two candidates of identify; empty: none
-  std::string command = {};                  ///< as the user typed it, for the page
+  ShellCommand command = {};                 ///< as the user typed it, for the page
 };
 
 struct StudyOptions : StudyFiles {

@@ -10,7 +10,6 @@
 #include "kinecal/files/results/standard_output.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/report/findings.hpp"
-#include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/identify/tell_apart.hpp"
 #include "output_file.hpp"
 #include "report.hpp"
@@ -57,10 +56,11 @@ std::string deciding_command(const CalibratedRobot& found, const InputOptions& n
     if (!sees_everywhere(found.robot_search->config))
       inputs.samples.clear();  // views are generated
     inputs.cameras.clear();
-    return fmt::format(
-        "which poses would decide between what explains the same:\n"
-        "  kinecal select-poses {} --tell-apart {} --count 10 -o poses.yaml\n",
-        input_options(inputs), shell_word(names));
+    const ShellCommand command = ShellCommand{"kinecal", "select-poses"}
+                                     .add(input_options(inputs))
+                                     .add_option("--tell-apart", {names})
+                                     .add({"--count", "10", "-o", "poses.yaml"});
+    return "which poses would decide between what explains the same:\n  " + command.str() + "\n";
   }
   return "";
 }
@@ -105,7 +105,7 @@ int identify(const IdentifyOptions& options) {
   say("{}\n", line);
   if (!are_files(inputs, options.output)) return kDone;
   say("{}", deciding_command(found, next));
-  say("next: kinecal calibrate {} --output calibrated\n", input_options(next));
+  say("next: {}\n", calibrate_command(next).str());
   return kDone;
 }
 

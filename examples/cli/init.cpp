@@ -17,7 +17,6 @@
 #include "kinecal/files/urdf/patch_urdf.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/nearest_name.hpp"
-#include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
@@ -311,19 +310,21 @@ InitAnswers answer(const Robot& robot, InitOptions& options) {
 
 /// The call with all that was given and answered.
 std::string call_of(const InitOptions& options) {
-  std::string call = "kinecal init --urdf " + shell_word(options.urdf), targets;
+  ShellCommand call{"kinecal", "init"};
+  std::string targets;
   for (const std::string& target : options.targets) {
     targets += (targets.empty() ? "" : ",") + target;
   }
   for (const auto& [option, value] :
-       {std::pair("--target", targets), std::pair("--arm", options.arm),
-        std::pair("--camera", options.camera), std::pair("--camera-type", options.camera_type),
+       {std::pair("--urdf", options.urdf), std::pair("--target", targets),
+        std::pair("--arm", options.arm), std::pair("--camera", options.camera),
+        std::pair("--camera-type", options.camera_type),
         std::pair("--robot-camera-name", options.camera_name),
         std::pair("--target-frame", options.target_frame),
         std::pair("--tracker-frame", options.tracker_frame), std::pair("--base", options.base)}) {
-    if (!value.empty()) call += std::string(" ") + option + " " + shell_word(value);
+    if (!value.empty()) call.add_option(option, {value});
   }
-  return call;
+  return call.str();
 }
 
 /// The answers; after questions, an error comes with the call that gives them.
@@ -434,20 +435,15 @@ int init(const InitOptions& options) {
   named.push_back(options.urdf);
   const bool streams = std::any_of(named.begin(), named.end(), detail::is_stream);
   if (streams || is_standard_output(options.output)) return kDone;  // no command could be pasted
-  const std::string files =
-      fmt::format("--urdf {} --config {}", shell_word(options.urdf), shell_word(options.output));
+  InputOptions inputs{.urdf = options.urdf, .config = options.output, .samples = options.from};
   if (options.from.empty()) {
-    say("next: kinecal check {}\n", files);
+    say("next: {}\n", ShellCommand{"kinecal", "check"}.add(input_options(inputs)).str());
+  } else if (const std::string columns = columns_file(options); !columns.empty()) {
+    inputs.samples = {"samples.yaml"};
+    say("next: {} && {}\n", convert_command(options.from.front(), columns).str(),
+        calibrate_command(inputs).str());
   } else {
-    std::string samples, before;
-    if (const std::string columns = columns_file(options); !columns.empty()) {
-      before = fmt::format("kinecal convert {} samples.yaml --columns {} && ",
-                           shell_word(options.from.front()), shell_word(columns));
-      samples = " --samples samples.yaml";
-    } else {
-      for (const std::string& file : options.from) samples += " --samples " + shell_word(file);
-    }
-    say("next: {}kinecal calibrate {}{} --output calibrated\n", before, files, samples);
+    say("next: {}\n", calibrate_command(inputs).str());
   }
   return kDone;
 }

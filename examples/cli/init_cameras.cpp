@@ -14,7 +14,6 @@
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
-#include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/cameras/initial_cameras.hpp"
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "output_file.hpp"
@@ -57,12 +56,12 @@ int init_cameras(const InitOptions& options) {
   write_text_file(capture, finder);
   say("wrote {} and {}\n  fill in what is zero in {}: its sizes decide the scale\n", options.output,
       capture, capture);
-  const std::string calibrate =
-      fmt::format("kinecal calibrate --config {} --samples samples.yaml --output calibrated",
-                  shell_word(options.output));
-  say("next: kinecal detect {} --images images --frame {} -o samples.yaml && {}\n",
-      shell_word(capture), shell_word(fmt::format("{}", fmt::join(options.cameras, ","))),
-      calibrate);
+  const ShellCommand detect =
+      ShellCommand{"kinecal", "detect", shell_file(capture), "--images", "images"}
+          .add_option("--frame", {fmt::format("{}", fmt::join(options.cameras, ","))})
+          .add({"-o", "samples.yaml"});
+  const InputOptions inputs{.config = options.output, .samples = {"samples.yaml"}};
+  say("next: {} && {}\n", detect.str(), calibrate_command(inputs).str());
   if (options.cameras.size() > 1) {
     say("  photographs of each camera are in its folder: images/{}; those taken at once have the "
         "same name\n",

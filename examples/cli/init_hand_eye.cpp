@@ -15,7 +15,6 @@
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/init/hand_eye.hpp"
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
@@ -100,21 +99,22 @@ int init_hand_eye(const InitOptions& options) {
   write_text_file(options.output, config);
   say("wrote {}, {} and {}\n  {} of the flange; {} says how the columns are read: look at it\n",
       urdf, columns, options.output, counted(samples.size(), "pose"), columns);
-  const std::string inputs_of_calibrate = fmt::format(
-      "--urdf {} --config {} --samples samples.yaml", shell_word(urdf), shell_word(options.output));
+  InputOptions inputs_of_calibrate{
+      .urdf = urdf, .config = options.output, .samples = {"samples.yaml"}};
   if (has_corners) {
-    say("next: kinecal convert {} samples.yaml --columns {} && kinecal calibrate {} --camera "
-        "camera=camera.yaml --output calibrated\n",
-        shell_word(options.poses), shell_word(columns), inputs_of_calibrate);
+    inputs_of_calibrate.cameras = {"camera=camera.yaml"};
+    say("next: {} && {}\n", convert_command(options.poses, columns).str(),
+        calibrate_command(inputs_of_calibrate).str());
     return kDone;
   }
   write_text_file(capture, initial_capture(robot, answers));
   say("wrote {}\n  fill in what is zero: its sizes decide the scale of the result\n", capture);
-  say("next: kinecal detect {} --images images --poses {} --columns {} --camera camera.yaml "
-      "--frame "
-      "{} -o samples.yaml && kinecal calibrate {} --output calibrated\n",
-      shell_word(capture), shell_word(options.poses), shell_word(columns), HandEyeNames::kCamera,
-      inputs_of_calibrate);
+  const ShellCommand detect =
+      ShellCommand{"kinecal", "detect", shell_file(capture), "--images", "images"}
+          .add_option("--poses", {options.poses})
+          .add_option("--columns", {columns})
+          .add({"--camera", "camera.yaml", "--frame", HandEyeNames::kCamera, "-o", "samples.yaml"});
+  say("next: {} && {}\n", detect.str(), calibrate_command(inputs_of_calibrate).str());
   return kDone;
 }
 

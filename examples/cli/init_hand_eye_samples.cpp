@@ -18,7 +18,6 @@
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/init/hand_eye.hpp"
 #include "kinecal/tools/init/hand_eye_fit.hpp"
 #include "output_file.hpp"
@@ -100,8 +99,8 @@ int init_hand_eye_samples(const InitOptions& options) {
   say("wrote {}, {} and {}\n  {} of the flange and of the object in the camera, which is {}\n",
       urdf, options.output, samples_file, counted(samples.size(), "pose"),
       on_hand ? "on the hand" : "beside the robot");
-  say("next: kinecal calibrate --urdf {} --config {} --samples {} --output calibrated\n",
-      shell_word(urdf), shell_word(options.output), shell_word(samples_file));
+  const InputOptions inputs{.urdf = urdf, .config = options.output, .samples = {samples_file}};
+  say("next: {}\n", calibrate_command(inputs).str());
   return kDone;
 }
 

@@ -14,7 +14,6 @@
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
-#include "kinecal/text/shell_word.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
 
@@ -158,14 +157,24 @@ PreparedCalibration read_input(const InputOptions& options, InputTexts& texts) {
   return unusable;
 }
 
-std::string input_options(const InputOptions& options) {
-  std::string text;
-  if (!options.urdf.empty()) text += " --urdf " + shell_word(options.urdf);
-  if (!options.config.empty()) text += " --config " + shell_word(options.config);
-  if (!options.samples.empty()) text += " --samples";
-  for (const std::string& file : options.samples) text += " " + shell_word(file);
-  for (const std::string& camera : options.cameras) text += " --camera " + shell_word(camera);
-  return text.empty() ? text : text.substr(1);
+ShellCommand input_options(const InputOptions& options) {
+  ShellCommand words;
+  if (!options.urdf.empty()) words.add_option("--urdf", {options.urdf});
+  if (!options.config.empty()) words.add_option("--config", {options.config});
+  words.add_option("--samples", options.samples);
+  for (const std::string& camera : options.cameras) words.add_option("--camera", {camera});
+  return words;
+}
+
+ShellCommand calibrate_command(const InputOptions& inputs) {
+  return ShellCommand{"kinecal", "calibrate"}
+      .add(input_options(inputs))
+      .add({"--output", "calibrated"});
+}
+
+ShellCommand convert_command(const std::string& table, const std::string& columns) {
+  return ShellCommand{"kinecal", "convert", shell_file(table), "samples.yaml"}.add_option(
+      "--columns", {columns});
 }
 
 void print_or_throw(const Diagnostics& diagnostics) {
@@ -176,18 +185,15 @@ void print_or_throw(const Diagnostics& diagnostics) {
 }
 
 void print(const Diagnostics& diagnostics) {
-  for (const std::string& note : diagnostics.notes) {
-    say(stderr, "note: {}\n", note);
-  }
-  for (const std::string& warning : diagnostics.warnings) {
-    say(stderr, "warning: {}\n", warning);
-  }
-  for (const std::string& error : diagnostics.errors) {
-    say(stderr, "error: {}\n", error);
-  }
-  for (const std::string& doubt : diagnostics.doubts) {
-    say(stderr, "doubt: {}\n", doubt);
-  }
+  const auto print_each = [](const char* kind, const std::vector<std::string>& messages) {
+    for (const std::string& message : messages) {
+      say(stderr, "{}: {}\n", kind, with_hanging_lines(message));
+    }
+  };
+  print_each("note", diagnostics.notes);
+  print_each("warning", diagnostics.warnings);
+  print_each("error", diagnostics.errors);
+  print_each("doubt", diagnostics.doubts);
 }
 
 }  // namespace kinecal::cli

@@ -44,8 +44,15 @@ struct Input {
 [[nodiscard]] Recording read_recordings(const std::vector<std::string>& files,
                                         Diagnostics& diagnostics);
 
-/// The options of a shell that name the same inputs: "--urdf robot.urdf --config calibrate.yaml --samples a.yaml b.yaml".
-[[nodiscard]] std::string input_options(const InputOptions& options);
+/// The options that name the same inputs: --urdf robot.urdf --config calibrate.yaml --samples a.yaml b.yaml.
+[[nodiscard]] ShellCommand input_options(const InputOptions& options);
+
+/// The calibration of these inputs, into the folder "calibrated".
+[[nodiscard]] ShellCommand calibrate_command(const InputOptions& inputs);
+
+/// The conversion of a table into samples.yaml.
+/// @param columns  file of their meaning
+[[nodiscard]] ShellCommand convert_command(const std::string& table, const std::string& columns);
 
 /// Prints warnings, doubts and errors to the standard error stream.
 void print(const Diagnostics& diagnostics);

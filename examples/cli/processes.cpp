@@ -137,7 +137,7 @@ int Processes::run(const std::function<int()>& work) const {
   } catch (const Interrupted& stopped) {
     code = fail(stopped.what(), kInterrupted);
   } catch (const std::exception& error) {
-    code = fail(std::string("error: ") + error.what(), kBadInput);
+    code = fail("error: " + with_hanging_lines(error.what()), kBadInput);
   }
   if (mpi_ != nullptr) mpi_->finish();
   return code;

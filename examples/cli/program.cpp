@@ -20,7 +20,7 @@
 #include "describe.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
-#include "kinecal/text/shell_word.hpp"
+#include "kinecal/text/shell_command.hpp"
 
 namespace {
 
@@ -988,16 +988,17 @@ class Commands {
   std::function<int()> called_;
 };
 
-/// The command line as a shell reads it.
-std::string command_line(int argc, char** argv) {
-  std::string line = "kinecal";
-  for (int i = 1; i < argc; ++i) line += " " + kinecal::shell_word(argv[i]);  // NOLINT: of main()
+/// The command line.
+kinecal::ShellCommand command_line(int argc, char** argv) {
+  kinecal::ShellCommand line{"kinecal"};
+  for (int i = 1; i < argc; ++i) line.add({argv[i]});  // NOLINT: of main()
   return line;
 }
 
 /// Runs a command with the line by which it was called.
 template <class Options>
-std::function<int(const Options&)> with_line(const std::string& line, int (*run)(const Options&)) {
+std::function<int(const Options&)> with_line(const kinecal::ShellCommand& line,
+                                             int (*run)(const Options&)) {
   return [line, run](Options options) {
     options.command = line;
     return run(options);
@@ -1005,7 +1006,7 @@ std::function<int(const Options&)> with_line(const std::string& line, int (*run)
 }
 
 /// @param line  the command line, for reports
-void add_commands(Commands& commands, const std::string& line) {
+void add_commands(Commands& commands, const kinecal::ShellCommand& line) {
   commands.add<InitOptions>(
       "init", "write a first configuration from a URDF; asks for what the options leave open",
       add_init, init);
@@ -1132,7 +1133,7 @@ int run_program(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "error: %s\n", printable(e.what()).c_str());
+    std::fprintf(stderr, "error: %s\n", printable(cli::with_hanging_lines(e.what())).c_str());
   }
   return cli::kBadInput;
 }

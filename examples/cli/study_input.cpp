@@ -26,14 +26,36 @@
 namespace kinecal::cli {
 namespace {
 
-/// Takes the poses of recorded samples.
-void take_recorded(const StudyFiles& files, StudyInput& input) {
-  Diagnostics diagnostics;
-  input.samples = read_recordings(files.samples, diagnostics).samples;
-  print_or_throw(diagnostics);
+/// True if some error block has residuals of a sample.
+bool is_used(const Calibration& calibration, const Sample& sample) {
+  return std::any_of(calibration.steps.begin(), calibration.steps.end(), [&](const auto& step) {
+    const std::unique_ptr<AnyProblem> one = step.problem->without_samples();
+    one->add_sample(sample);
+    for (int t = 0; t < one->num_terms(); ++t) {
+      if (one->samples_of(t) > 0) return true;
+    }
+    return false;
+  });
+}
+
+/// Takes recorded samples and their poses, but those that no error block uses.
+/// @returns  the calibration of these samples
+Calibration take_recorded(const StudyFiles& files, StudyInput& input) {
+  Diagnostics of_files, of_samples;
+  input.samples = read_recordings(files.samples, of_files).samples;
+  print_or_throw(of_files);
+  Calibration calibration = assemble(input.config, input.robot, input.samples, of_samples);
+  print_or_throw(of_samples);
+  const std::size_t unused = std::erase_if(
+      input.samples, [&](const Sample& sample) { return !is_used(calibration, sample); });
+  if (unused > 0) {
+    say(stderr, "note: {} left out: no error block has features of all its models there\n",
+        counted(unused, "sample"));
+  }
   for (const Sample& sample : input.samples) {
     input.poses.push_back({sample.joint_names, sample.joint_positions, {}, sample.source});
   }
+  return calibration;
 }
 
 /// The poses of a file, each with a name for messages.
@@ -91,14 +113,9 @@ ParameterTable take_poses(const StudyFiles& files, int count, StudyInput& input)
 /// Adds new poses before the recorded samples, which exist already: positions between those that were recorded, and
 /// the features of recorded samples.
 void add_poses_between(int count, std::uint64_t seed, StudyInput& input) {
-  std::vector<Sample> recorded;
-  std::vector<CapturePose> poses, known;
-  for (std::size_t i = 0; i < input.samples.size(); ++i) {  // the others say nothing
-    if (!has_numbers(input.samples[i])) continue;
-    recorded.push_back(input.samples[i]);
-    known.push_back(input.poses[i]);
-  }
-  if (recorded.empty()) throw InputError("--samples: no sample has features that are numbers");
+  const std::vector<Sample> recorded = std::move(input.samples);
+  const std::vector<CapturePose> known = std::move(input.poses);
+  std::vector<CapturePose> poses;
   std::vector<Sample> made;
   SeededRandom random(seed);
   std::map<std::string, std::pair<double, double>> ranges;
@@ -127,24 +144,20 @@ void add_poses_between(int count, std::uint64_t seed, StudyInput& input) {
 }
 
 /// Frees two explanations that are to be told apart; with recorded samples, adds poses where no camera must see them.
-/// @returns  the recorded samples, if poses were added
-std::vector<Sample> free_both(const StudyFiles& files, int poses, StudyInput& input) {
+void free_both(const StudyFiles& files, int poses, StudyInput& input) {
   Explanations both = free_explanations(input.config, input.robot, input.samples, files.tell_apart);
   input.config = std::move(both.config);
   input.explanations = std::move(both.parameters);
-  if (files.samples.empty() || !sees_everywhere(input.config)) return {};
-  std::vector<Sample> recorded = input.samples;
+  if (files.samples.empty() || !sees_everywhere(input.config)) return;
   add_poses_between(poses, static_cast<std::uint64_t>(std::max(1, files.seed)), input);
-  return recorded;
 }
 
 /// The values of a robot without errors: of the configuration; or what recorded samples show.
-/// @param recorded  by the configuration that was given
-void set_drawn(const StudyFiles& files, const ParameterTable& places, const Calibration& recorded,
-               StudyInput& input) {
+/// @param recorded  by the configuration that was given; nullptr: there are no recorded samples
+void set_drawn(const ParameterTable& places, const Calibration* recorded, StudyInput& input) {
   ParameterTable table = input.calibration.table;
-  if (!files.samples.empty()) {
-    const CalibrationResult found = kinecal::calibrate(recorded);
+  if (recorded != nullptr) {
+    const CalibrationResult found = kinecal::calibrate(*recorded);
     if (!found.converged) {
       throw InputError("the samples cannot be calibrated: " + found.termination +
                        "; a study starts from their result");
@@ -154,7 +167,7 @@ void set_drawn(const StudyFiles& files, const ParameterTable& places, const Cali
     }
   }
   for (const CalibrationStep& step : input.calibration.steps) {
-    if (!files.samples.empty()) break;
+    if (recorded != nullptr) break;
     for (const auto& [parameter, value] : step.assignments) table[parameter].value = value;
   }
   const Eigen::VectorXd configured = table.values();
@@ -250,22 +263,18 @@ std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
     print_or_throw(of_first);
   }
   ParameterTable places;
+  std::optional<Calibration> recorded;
   if (files.samples.empty()) {
     places = take_poses(files, poses, *input);
   } else {
-    take_recorded(files, *input);
+    recorded.emplace(take_recorded(files, *input));
   }
-  const Config given = input->config;
-  std::vector<Sample> recorded;
-  if (!files.tell_apart.empty()) recorded = free_both(files, poses, *input);
+  if (!files.tell_apart.empty()) free_both(files, poses, *input);
   Diagnostics of_samples;
   input->calibration = assemble(input->config, input->robot, input->samples, of_samples);
+  if (recorded) of_samples.warnings.clear();  // take_recorded() has printed them
   print_or_throw(of_samples);
-  std::optional<Calibration> of_recorded;
-  if (!recorded.empty()) {
-    of_recorded.emplace(assemble(given, input->robot, recorded, of_samples));
-  }
-  set_drawn(files, places, of_recorded ? *of_recorded : input->calibration, *input);
+  set_drawn(places, recorded ? &*recorded : nullptr, *input);
   if (files.seed > 0) input->plan.setup.seed = static_cast<std::uint64_t>(files.seed);
   set_up(files, *input);
   input->command = files.command;

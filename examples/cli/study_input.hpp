@@ -29,7 +29,7 @@ struct StudyInput {
   Calibration calibration;                                 ///< of these samples
   StudySetup setup;                                        ///< without truth and noise of a job
   std::vector<std::pair<std::string, std::string>> files;  ///< that were read: role and name
-  std::string command;                                     ///< as the user typed it
+  ShellCommand command;                                    ///< as the user typed it
   std::size_t have = 0;     ///< the last samples, which exist already
   bool keep_ruined = true;  ///< calibrate with all samples
   /// Values of all parameters by the configuration: those of its simulated target can differ.

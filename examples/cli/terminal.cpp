@@ -59,6 +59,13 @@ std::string colored(std::string_view text) {
 
 }  // namespace
 
+std::string with_hanging_lines(std::string message) {
+  for (std::size_t at = 0; (at = message.find('\n', at)) != std::string::npos; ++at) {
+    message.insert(at + 1, "  ");
+  }
+  return message;
+}
+
 std::size_t terminal_width(int descriptor) {
   winsize size{};
   const bool known = ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 20;

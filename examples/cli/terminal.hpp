@@ -34,6 +34,9 @@ void say(fmt::format_string<T...> format, T&&... arguments) {
   say(stdout, format, std::forward<T>(arguments)...);
 }
 
+/// A message whose further lines are indented, so that what it quotes from a file cannot begin a line.
+[[nodiscard]] std::string with_hanging_lines(std::string message);
+
 /// Columns of the terminal behind a file descriptor; 80 if that is not known.
 [[nodiscard]] std::size_t terminal_width(int descriptor);
 

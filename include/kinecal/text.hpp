@@ -12,5 +12,5 @@
 #include "kinecal/text/printable.hpp"
 #include "kinecal/text/reading.hpp"
 #include "kinecal/text/sentence.hpp"
-#include "kinecal/text/shell_word.hpp"
+#include "kinecal/text/shell_command.hpp"
 #include "kinecal/text/wrapped.hpp"

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <pugixml.hpp>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -195,6 +196,25 @@ TEST(Architecture, EveryHeaderHasALicence) {
     EXPECT_THAT(text, testing::StartsWith("// ")) << file.path();
   }
   EXPECT_GT(headers, 100);
+}
+
+/// A name in a command that people paste is quoted if the command is made of words: ShellCommand.  So no text has a place
+/// for a name after a command of kinecal, or after an option that takes a name.
+TEST(Architecture, CommandsAreMadeOfWords) {
+  const std::regex place(
+      R"re("[^"\n]*(kinecal [a-z-]+ (--[a-z-]+ )?|--(urdf|config|samples|camera|output|name)[ =])(\{|" ?\+))re");
+  int sources = 0;
+  for (const fs::path& root : {kHeaders, fs::path(test::source_folder()) / "examples/cli"}) {
+    for (const auto& file : fs::recursive_directory_iterator(root)) {
+      if (!is_source(file.path())) continue;
+      ++sources;
+      const std::string text = text_of(file.path());
+      for (std::sregex_iterator at(text.begin(), text.end(), place), end; at != end; ++at) {
+        ADD_FAILURE() << file.path() << ": compose it with ShellCommand: " << at->str();
+      }
+    }
+  }
+  EXPECT_GT(sources, 500);
 }
 
 TEST(Architecture, RosSeesTheVersionThatCMakeHas) {

@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 
 #include "kinecal/files/checksum.hpp"
+#include "kinecal/files/json/json_text.hpp"
+#include "support/hostile_names.hpp"
+#include "support/shell_words.hpp"
 
 namespace kinecal {
 namespace {
@@ -17,7 +21,8 @@ using testing::Not;
 /// A report in which every text is hostile.
 ReportData hostile(const std::string& name) {
   ReportData data;
-  data.robot = data.version = data.command = data.date = data.recorded = data.summary = name;
+  data.robot = data.version = data.date = data.recorded = data.summary = name;
+  data.command = {"kinecal", name};
   data.reasons = {name};
   data.inputs = {{name, name, 12, name}};
   data.steps.push_back({.name = name, .converged = true, .termination = name, .costs = {2.0, 1.0}});
@@ -84,6 +89,41 @@ TEST(Html, IsWellFormedWhateverNamesContain) {
   }
 }
 
+/// All text of an element, as a browser copies it.
+std::string copied(const pugi::xml_node& element) {
+  std::string text;
+  for (const pugi::xpath_node& part : element.select_nodes(".//text()"))
+    text += part.node().value();
+  return text;
+}
+
+TEST(Html, CommandsAreCopiedAsWordsWhateverNamesContain) {
+  for (const std::string& name : test::kHostileNames) {
+    ReportData data = hostile(name);
+    data.next = "do it:\n  " + data.command.str();
+    const std::string page = html_report(data, detail::json_in_html({{"name", name}}));
+    pugi::xml_document document;
+    ASSERT_TRUE(
+        document.load_string(markup_of(page).c_str(), pugi::parse_default | pugi::parse_ws_pcdata))
+        << name;
+    EXPECT_EQ(document.select_nodes("//script").size(), 2u) << "the scene and the page's own";
+    const std::string scene = between(page, "id=\"scene\">", "</script>");
+    EXPECT_EQ(detail::Json::parse(scene).at("name"), name);
+    int commands = 0;
+    for (const pugi::xpath_node& code : document.select_nodes("//pre[@class='command']/code")) {
+      const test::PastedCommand pasted = test::paste(copied(code.node()));
+      EXPECT_FALSE(pasted.did_more) << name;
+      EXPECT_THAT(pasted.words, testing::ElementsAre("kinecal", name));
+      ++commands;
+    }
+    EXPECT_EQ(commands, 2);
+    const test::PastedCommand hold =
+        test::paste(copied(document.select_node("//div[@class='open']/p/code").node()));
+    EXPECT_FALSE(hold.did_more) << name;
+    EXPECT_THAT(hold.words, testing::Contains(testing::EndsWith(name)));
+  }
+}
+
 TEST(Html, ElidesLongNamesWithTheWholeNameAsTooltip) {
   const std::string name(5000, 'x');
   pugi::xml_document document;
@@ -97,7 +137,8 @@ TEST(Html, ElidesLongNamesWithTheWholeNameAsTooltip) {
     EXPECT_THAT(found.node().parent().attribute("title").value(), testing::StartsWith(name));
   }
   EXPECT_GT(elided, 12) << "error block, parameters, steps, inputs, samples and their faults";
-  EXPECT_EQ(document.select_node("//pre[@class='command']/code").node().text().get(), name)
+  EXPECT_EQ(document.select_node("//pre[@class='command']/code").node().text().get(),
+            "kinecal " + name)
       << "it is copied";
 }
 

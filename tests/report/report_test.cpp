@@ -7,6 +7,8 @@
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"
+#include "support/hostile_names.hpp"
+#include "support/shell_words.hpp"
 
 namespace kinecal {
 namespace {
@@ -163,9 +165,15 @@ TEST(Summary, HasTheResultInOneLine) {
             "use with care · hand_eye 1 mm (held out 2.1 mm) · 1 of 3 samples left out");
 }
 
+ProgramCall called(const std::string& output = "out") {
+  return {{"kinecal", "calibrate", "--output", output},
+          {"--urdf", "r.urdf", "--config", "c.yaml", "--samples", "s"},
+          output};
+}
+
 TEST(NextStep, AnswersTheVerdictWithACommand) {
   Findings all = findings();
-  all.call = {"kinecal calibrate --output out", "--urdf r.urdf --config c.yaml --samples s", "out"};
+  all.call = called();
   EXPECT_EQ(next_step(all),
             "hold what these samples do not determine:\n"
             "  kinecal calibrate --output out --hold camera_z_offset --force");
@@ -183,6 +191,31 @@ TEST(NextStep, AnswersTheVerdictWithACommand) {
   EXPECT_THAT(next_step(all), HasSubstr("\n  kinecal verify out NEW_SAMPLES"));
 }
 
+/// The words of the command that next_step() gives.
+std::vector<std::string> pasted(const Findings& all) {
+  const std::string step = next_step(all);
+  const test::PastedCommand command = test::paste(step.substr(step.find("\n  ") + 3));
+  EXPECT_FALSE(command.did_more) << step;
+  return command.words;
+}
+
+TEST(NextStep, GivesNamesAndFoldersAsWordsWhateverTheyAre) {
+  for (const std::string& name : test::kHostileNames) {
+    Findings all = findings();
+    all.call = called(name);
+    std::vector<int>& hold = all.assessments[0].observability.hold;
+    hold = {all.result.table.add({.name = name + " x"})};
+    EXPECT_THAT(pasted(all),
+                testing::IsSupersetOf({name, (name.starts_with("-") ? "--hold=" : "") + name + " x",
+                                       std::string("--force")}));
+    EXPECT_THAT(observability_text("s", all.assessments[0].observability, all.result.table),
+                HasSubstr(": " + ShellCommand().add_option("--hold", {name + " x"}).str() + "\n"));
+    all.judgement = {};
+    EXPECT_THAT(pasted(all),
+                testing::ElementsAre("kinecal", "verify", shell_file(name), "NEW_SAMPLES"));
+  }
+}
+
 TEST(NextStep, HoldsAFrameByItsName) {
   Findings all = findings();
   std::vector<int>& hold = all.assessments[0].observability.hold;
@@ -197,7 +230,7 @@ TEST(NextStep, HoldsAFrameByItsName) {
 
 TEST(NextStep, LetsIdentifySearchWhereMuchIsToBeHad) {
   Findings all = findings();
-  all.call = {"kinecal calibrate --output out", "--urdf r.urdf --config c.yaml --samples s", "out"};
+  all.call = called();
   all.helps_leave = 0.6;
   EXPECT_THAT(next_step(all), HasSubstr("hold what"));
   all.helps_leave = 0.1;

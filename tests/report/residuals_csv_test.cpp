@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "kinecal/report/residual_rows.ipp"
+#include "support/hostile_names.hpp"
 #include "support/noisy_scene.hpp"
 
 namespace kinecal {
@@ -45,6 +46,24 @@ TEST(ResidualsCsv, HasARowForEachFeatureWithItsDistance) {
   }
   EXPECT_EQ(rows, 12 * 4);
   EXPECT_NEAR(0.5 * squares, scene.result.steps[0].final_cost * 1e-6, 1e-12);
+}
+
+/// What a spreadsheet makes of a cell: without its quotes.
+std::string read_cell(std::string cell) {
+  if (!cell.starts_with('"')) return cell;
+  cell = cell.substr(1, cell.size() - 2);
+  for (std::size_t at = 0; (at = cell.find("\"\"", at)) != std::string::npos; ++at)
+    cell.erase(at, 1);
+  return cell;
+}
+
+TEST(ResidualsCsv, NamesAreNoFormulasAndCanBeReadBack) {
+  for (const std::string& name : test::kHostileNames) {
+    std::string cell = read_cell(detail::csv_cell(name));
+    EXPECT_EQ(std::string("=+-@").find(cell.front()), std::string::npos) << cell;
+    if (cell.starts_with('\'')) cell.erase(0, 1);
+    EXPECT_EQ(cell, name);
+  }
 }
 
 TEST(ResidualsCsv, NumbersFeaturesAsTheSampleListsThemAndGivesTheirIds) {

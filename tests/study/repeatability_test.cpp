@@ -101,6 +101,33 @@ TEST(Repeatability, FreeTargetsAreSixUnknownsOfWhichEachSensorHasResiduals) {
   }
 }
 
+/// Its features are not numbers, or there are none.
+TEST(Repeatability, ASampleThatNoBlockUsesAddsNothing) {
+  const SceneStudy study;
+  const FreeSet free = study.scene.free();
+  for (const std::size_t unused : {0U, 1U}) {
+    std::vector<Sample> samples(study.setup.samples.begin(), study.setup.samples.begin() + 12);
+    for (Observation& seen : samples[unused].observations) {
+      for (Feature& feature : seen.features) feature.point.setConstant(std::nan(""));
+    }
+    samples[2 + unused].observations.clear();
+    const StudyDesign design = study_design(
+        study.setup.make, free, study.setup.drawn,
+        exact_samples(study.setup.make, study.setup.drawn, samples), study.setup.noise);
+    std::vector<int> all, used;
+    for (int i = 0; i < 12; ++i) {
+      all.push_back(i);
+      if (design.samples[static_cast<std::size_t>(i)].information.matrix().norm() > 0.0)
+        used.push_back(i);
+    }
+    EXPECT_EQ(used.size(), 10U);
+    const ExpectedUncertainty with = expected_uncertainty(design, all),
+                              without = expected_uncertainty(design, used);
+    EXPECT_EQ(with.determined, without.determined);
+    EXPECT_EQ(with.covariance.matrix(), without.covariance.matrix());
+  }
+}
+
 TEST(Repeatability, VariancesAreThoseOfTheCovariance) {
   constexpr int kTrials = 200;
   const SceneStudy study;

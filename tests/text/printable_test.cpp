@@ -11,7 +11,7 @@ TEST(Printable, LeavesLettersOfAllAlphabets) {
        {"", "elbow_joint", "gélenk\t1\n", "\xe5\x85\xb3\xe8\x8a\x82", "\xf0\x9f\xa4\x96"}) {
     EXPECT_EQ(printable(text), text);
   }
-  EXPECT_FALSE(has_control_characters("a\tb\n"));
+  EXPECT_FALSE(has_control_characters("a\tb"));
   EXPECT_FALSE(has_control_characters("gélenk \xe5\x85\xb3 1"));
 }
 
@@ -23,7 +23,7 @@ TEST(Printable, ShowsControlCharactersAsNumbers) {
                       "31m"),
             "\\u009b31m")
       << "CSI of eight bits, as UTF-8";
-  for (const char* text : {"\x1b", "a\r", "\x7f", "\xc2\x9b"}) {
+  for (const char* text : {"\x1b", "a\r", "a\n", "\u2028", "\x7f", "\xc2\x9b"}) {
     EXPECT_TRUE(has_control_characters(text));
   }
 }
@@ -31,7 +31,7 @@ TEST(Printable, ShowsControlCharactersAsNumbers) {
 TEST(Printable, ShowsWhatTurnsTheDirectionOfWritingAsNumbers) {
   EXPECT_EQ(printable("gpj.\u202Eexe"), "gpj.\\u202eexe");
   for (const char* turns : {"\u202A", "\u202B", "\u202C", "\u202D", "\u2066", "\u2067", "\u2068",
-                            "\u2069", "\u200E", "\u200F", "\u061C", "\u2028"}) {
+                            "\u2069", "\u200E", "\u200F", "\u061C"}) {
     EXPECT_EQ(printable(turns).size(), 6u) << printable(turns);
     EXPECT_FALSE(has_control_characters(turns)) << "a robot may have such a name";
   }

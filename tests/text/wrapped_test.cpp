@@ -14,6 +14,11 @@ TEST(Wrapped, BreaksNeitherWordsNorTables) {
   EXPECT_EQ(wrapped("name   unit   value\n\n", 5), "name   unit   value\n\n");
 }
 
+TEST(Wrapped, KeepsACommandInOneLineToBePasted) {
+  EXPECT_EQ(wrapped("hold it:\n  kinecal calibrate --hold 'a b'\n", 9),
+            "hold it:\n  kinecal calibrate --hold 'a b'\n");
+}
+
 TEST(Wrapped, CountsCharactersAndNotBytes) {
   EXPECT_EQ(wrapped("\xC3\xA4\xC3\xB6\xC3\xBC abc", 7), "\xC3\xA4\xC3\xB6\xC3\xBC abc\n");
 }

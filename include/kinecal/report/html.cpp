@@ -35,14 +35,14 @@ inline constexpr std::size_t kMostOfTitle = 120;  ///< characters
 }
 
 std::string html_inputs(const std::vector<InputFile>& inputs, const std::string& version,
-                        const std::string& command) {
+                        const ShellCommand& command) {
   std::vector<std::vector<std::string>> rows = {{"input", "file", "SHA-256", "bytes"}};
   for (const InputFile& input : inputs) {
     rows.push_back({input.role, input.name, input.sha256, fmt::format("{}", input.bytes)});
   }
   return fmt::format("{}<p>{}, repeated by</p>\n<pre class=\"command\"><code>{}</code></pre>\n",
                      html_table(rows, "tttn"), html_sentence(version),
-                     html_sentence(command, true));
+                     html_sentence(command.str(), true));
 }
 
 std::string html_lines(std::string_view text) {

@@ -54,7 +54,7 @@ namespace detail {
 /// The input files, and the command that repeats the run.
 /// @param version  "kinecal 0.2.0"
 [[nodiscard]] std::string html_inputs(const std::vector<InputFile>& inputs,
-                                      const std::string& version, const std::string& command);
+                                      const std::string& version, const ShellCommand& command);
 
 }  // namespace detail
 

@@ -12,6 +12,7 @@
 #include "kinecal/report/html_sections.ipp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/first_names.hpp"
+#include "kinecal/text/shell_command.hpp"
 
 namespace kinecal::detail {
 
@@ -86,8 +87,7 @@ namespace kinecal::detail {
   }
   html += "</ul>";
   if (!data.hold.empty()) {
-    std::string hold = "--hold";
-    for (const std::string& name : data.hold) hold += " " + name;
+    const std::string hold = ShellCommand().add_option("--hold", data.hold).str();
     html += "<p>Hold these to determine the others: <code>" + html_sentence(hold, true) +
             "</code>. Poses that move the joints between them apart, or another target, determine "
             "them as well.</p>";

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/report/next_step.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/parameters_text.ipp"
@@ -14,12 +18,11 @@ namespace detail {
 namespace {
 
 /// Names for --hold: that of a frame in place of its six parameters.
-[[nodiscard]] std::string names_to_hold(const std::vector<int>& parameters,
-                                        const ParameterTable& table) {
+[[nodiscard]] std::vector<std::string> names_to_hold(const std::vector<int>& parameters,
+                                                     const ParameterTable& table) {
   std::set<std::string> names;
   for (const int p : parameters) names.insert(table[p].name);
-  std::string text;
-  const auto add = [&](const std::string& name) { text += (text.empty() ? "" : " ") + name; };
+  std::vector<std::string> held;
   for (const int p : parameters) {
     const std::string& name = table[p].name;
     const std::string frame = name.substr(0, name.rfind('_'));
@@ -27,22 +30,29 @@ namespace {
       return names.contains(parameter_name(frame, axis));
     });
     if (!whole) {
-      add(name);
+      held.push_back(name);
     } else if (name == parameter_name(frame, kFrameAxes.front())) {
-      add(frame);
+      held.push_back(frame);
     }
   }
-  return text;
+  return held;
 }
 
-/// The call with other options; without one, what to do in words.
-[[nodiscard]] std::string again(const Findings& findings, const std::string& options,
-                                const std::string& in_words) {
+/// The call with other options.
+[[nodiscard]] std::string again(const Findings& findings, const ShellCommand& options) {
   const ProgramCall& call = findings.call;
-  if (call.command.empty()) return in_words;
   const bool wrote = !call.output.empty() && findings.judgement.verdict != Grade::do_not_use;
-  const bool forced = call.command.find(" --force") != std::string::npos;
-  return call.command + options + (wrote && !forced ? " --force" : "");
+  ShellCommand command = call.command;
+  command.add(options);
+  if (wrote && !call.command.has("--force")) command.add({"--force"});
+  return command.str();
+}
+
+/// ":" and a command of its own line; empty if the program was not called.
+/// @param inputs  as of ProgramCall
+[[nodiscard]] std::string with_inputs(const char* name, const ShellCommand& inputs) {
+  if (inputs.empty()) return "";
+  return ":\n  " + ShellCommand{"kinecal", name}.add(inputs).str();
 }
 
 /// Parameters that may be held where they were: not those of a pose that nobody knew.
@@ -74,8 +84,11 @@ namespace {
     why = "what does not help the fit";
   }
   if (parameters.empty()) return {};
-  const std::string names = names_to_hold(parameters, findings.result.table);
-  return "hold " + why + ":\n  " + again(findings, " --hold " + names, names);
+  const std::vector<std::string> names = names_to_hold(parameters, findings.result.table);
+  return "hold " + why + ":\n  " +
+         (findings.call.command.empty()
+              ? fmt::format("{}", fmt::join(names, " "))
+              : again(findings, ShellCommand().add_option("--hold", names)));
 }
 
 }  // namespace
@@ -86,8 +99,7 @@ std::string next_step(const Findings& findings) {
   const ProgramCall& call = findings.call;
   constexpr double kMuch = 0.5;  // of the error on held-out poses
   if (judgement.verdict != Grade::good && findings.helps_leave < kMuch) {
-    return "find out what else is wrong" +
-           (call.inputs.empty() ? "" : ":\n  kinecal identify " + call.inputs);
+    return "find out what else is wrong" + detail::with_inputs("identify", call.inputs);
   }
   if (judgement.causes > 0) {
     return std::string(judgement.causes == 1 ? "mend the cause" : "mend the causes") +
@@ -99,22 +111,20 @@ std::string next_step(const Findings& findings) {
              ", and calibrate other samples, too: the results should agree";
     }
     if (call.output.empty()) return "verify the result with a few new poses";
-    return "use " + call.output +
-           "/calibrated.urdf, and verify it with a few new poses:\n"
-           "  kinecal verify " +
-           call.output + " NEW_SAMPLES";
+    return "use " + call.output + "/calibrated.urdf, and verify it with a few new poses:\n  " +
+           ShellCommand{"kinecal", "verify", shell_file(call.output), "NEW_SAMPLES"}.str();
   }
   const std::string held = detail::hold(findings);
   if (!held.empty()) return held;
   const bool is_open =
       !findings.assessments.empty() && !findings.assessments.back().weak.hold.empty();
   if (judgement.wants_samples || is_open) {
-    return "record more poses" +
-           (call.inputs.empty() ? "" : "; which:\n  kinecal plan " + call.inputs);
+    return std::string("record more poses") + (call.inputs.empty() ? "" : "; which") +
+           detail::with_inputs("plan", call.inputs);
   }
   return "see where residuals are large" +
          (call.command.empty() ? ""
-                               : ":\n  " + detail::again(findings, " --report report.html", ""));
+                               : ":\n  " + detail::again(findings, {"--report", "report.html"}));
 }
 
 }  // namespace kinecal

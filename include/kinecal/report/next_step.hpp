@@ -6,16 +6,18 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/text/shell_command.hpp"
+
 namespace kinecal {
 
 struct Findings;
 
 /// How the program was called; empty in a program of one's own.
 struct ProgramCall {
-  std::string command = {};  ///< "kinecal calibrate --urdf robot.urdf ..."
-  std::string inputs = {};   ///< "--urdf robot.urdf --config calibrate.yaml --samples a.yaml"
-  std::string output = {};   ///< folder of the results; empty: none are written
-  std::string version = {};  ///< of the program
+  ShellCommand command = {};  ///< kinecal calibrate --urdf robot.urdf ...
+  ShellCommand inputs = {};   ///< --urdf robot.urdf --config calibrate.yaml --samples a.yaml
+  std::string output = {};    ///< folder of the results; empty: none are written
+  std::string version = {};   ///< of the program
   std::vector<std::pair<std::string, std::string>> files =
       {};  ///< role ("URDF", "configuration", "samples",
            ///< "camera") and name of each that was read

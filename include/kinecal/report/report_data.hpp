@@ -89,7 +89,7 @@ struct ReportData {
   std::vector<std::string> helps;    ///< held parameters that would lower the error
   std::string next;                  ///< what to do: see next_step()
   std::string version;               ///< "kinecal 0.2.0"
-  std::string command;               ///< repeats the run
+  ShellCommand command;              ///< repeats the run
   std::string date;                  ///< "2026-11-23"; of the calibration
   std::string recorded;              ///< when samples were recorded; empty: unknown
   std::vector<InputFile> inputs;

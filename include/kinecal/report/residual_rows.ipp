@@ -6,17 +6,22 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {
 
-/// A name as a cell of a table.
+/// A name as a cell of a table.  One that a spreadsheet would take for a formula gets an apostrophe before it, and so does
+/// one that begins with an apostrophe.
 [[nodiscard]] inline std::string csv_cell(const std::string& name) {
-  if (name.find_first_of(",\"\n") == std::string::npos) return name;
+  const bool is_formula =
+      !name.empty() && std::string_view("=+-@\t\r'").find(name[0]) != std::string_view::npos;
+  const std::string text = (is_formula ? "'" : "") + name;
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string all = "\"";
-  for (const char c : name) all += c == '"' ? std::string("\"\"") : std::string(1, c);
+  for (const char c : text) all += c == '"' ? std::string("\"\"") : std::string(1, c);
   return all + "\"";
 }
 

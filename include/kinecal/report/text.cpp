@@ -10,6 +10,7 @@
 
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/text/shell_command.hpp"
 
 namespace kinecal {
 
@@ -115,9 +116,10 @@ std::string observability_text(const std::string& step, const Observability& obs
       fmt::format("step '{}': {} of {} parameters cannot be determined from these samples\n", step,
                   unknown, static_cast<std::size_t>(observability.rank) + unknown);
   if (!observability.hold.empty()) {
-    text += "  to determine the others, hold: --hold";
-    for (const int parameter : observability.hold) text += " " + table[parameter].name;
-    text += "\n";
+    std::vector<std::string> names;
+    for (const int parameter : observability.hold) names.push_back(table[parameter].name);
+    text += "  to determine the others, hold: " + ShellCommand().add_option("--hold", names).str() +
+            "\n";
   }
   text += "  no residual changes along:\n";
   constexpr std::size_t kCombinations = 4, kParameters = 3;

@@ -24,7 +24,9 @@ class DesignRows {
              std::span<const Sample> samples, const MeasurementNoise& noise, Targets targets)
       : changing_(make, values, samples), noise_(noise) {
     const StudyRows rows = changing_.rows(changing_.samples(), &free);
-    stacks_.resize(changing_.samples().size());
+    const Stack no_rows{
+        {}, Eigen::MatrixXd(0, free.size()), {}, {}};  // of a sample that no block uses
+    stacks_.assign(changing_.samples().size(), no_rows);
     for (const auto& [key, jacobian] : rows.jacobian) {
       Stack& stack = stacks_[sample_of(key)];
       stack.first[key] = stack.jacobian.rows();
@@ -151,7 +153,7 @@ class DesignRows {
         const auto change = [&](std::size_t, const Observation& seen, std::size_t place) {
           const Feature& feature = seen.features[place];
           FeatureChange of;
-          of.point = k < 3 ? axis : axis.cross(feature.point - seen.features[0].point);
+          of.point = k < 3 ? axis : axis.cross(feature.point - pivot_of(seen));
           if (k >= 3 && feature.rotation) of.rotation = feature.rotation->transpose() * axis;
           return std::optional(of);
         };

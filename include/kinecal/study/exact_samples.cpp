@@ -79,7 +79,7 @@ class ExactSearch {
     if (move.axis < 3) {
       change.point = axis;
     } else if (is_rigid(move.sensor)) {
-      change.point = axis.cross(seen.features[place].point - seen.features[0].point);
+      change.point = axis.cross(seen.features[place].point - pivot_of(seen));
     } else {
       change.rotation = axis;
     }

@@ -19,6 +19,14 @@ namespace kinecal::detail {
 /// Place of features that share their rows: those of planes.
 inline constexpr int kAllPlaces = -1;
 
+/// The point about which all features of an observation turn: the first that is a number; the origin if none is.
+[[nodiscard]] inline Vector3<double> pivot_of(const Observation& seen) {
+  for (const Feature& feature : seen.features) {
+    if (feature.point.allFinite()) return feature.point;
+  }
+  return Vector3<double>::Zero();
+}
+
 /// Rows of one feature in one sample: sample, term, place.
 using FeatureKey = std::tuple<int, int, int>;
 

@@ -10,7 +10,7 @@
 
 namespace kinecal {
 
-/// True if a text has control characters other than line ends and tabs, or is not UTF-8.
+/// True if a text has line ends or control characters other than tabs, or is not UTF-8.
 [[nodiscard]] bool has_control_characters(std::string_view text);
 
 /// The text with control characters of ASCII, and bytes that are not UTF-8, as "\x1b", and with others that

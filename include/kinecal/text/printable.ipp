@@ -29,8 +29,8 @@ KINECAL_INLINE bool has_control_characters(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t begin = at;
     const char32_t c = detail::next_character(text, at);
-    const bool control = c < 0x20 || (c >= 0x7F && c < 0xA0);
-    if (detail::is_no_text(c, at - begin) || (control && c != '\n' && c != '\t')) return true;
+    const bool control = c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x2028 || c == 0x2029;
+    if (detail::is_no_text(c, at - begin) || (control && c != '\t')) return true;
   }
   return false;
 }

@@ -9,7 +9,7 @@
 namespace kinecal {
 
 /// Breaks lines at spaces so that they fit a width; what follows is indented two columns more than its line. Words
-/// are not broken, nor rows of tables: lines with three spaces in a row.
+/// are not broken, nor rows of tables, which have three spaces in a row, nor commands of kinecal, which are to be pasted.
 /// @param width  columns, of characters in UTF-8
 [[nodiscard]] inline std::string wrapped(std::string_view text, std::size_t width) {
   const auto columns = [](std::string_view of) {
@@ -24,7 +24,7 @@ namespace kinecal {
     const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
     std::string_view words = line.substr(indent);
     all.append(indent, ' ');
-    if (words.find("   ") != std::string_view::npos) {
+    if (words.find("   ") != std::string_view::npos || words.starts_with("kinecal ")) {
       all.append(words);
       words = {};
     }

@@ -31,6 +31,18 @@ TEST_F(FileSet, ReplacesFilesAndLeavesNothingElse) {
   EXPECT_EQ(count(), 2);
 }
 
+TEST_F(FileSet, KeepsFilesThatAppearMeanwhileIfItIsToKeepThem) {
+  OutputFolder folder(folder_);
+  write("b", "of somebody");
+  EXPECT_THROW(folder.write({{"a", "1"}, {"b", "2"}}, Existing::kept), OutputError);
+  EXPECT_EQ(read("b"), "of somebody");
+  EXPECT_EQ(count(), 1) << "all files or none";
+  fs::remove(folder_ / "b");
+  folder.write({{"a", "1"}, {"b", "2"}}, Existing::kept);
+  EXPECT_EQ(read("b"), "2");
+  EXPECT_EQ(count(), 2);
+}
+
 TEST_F(FileSet, SweepsTheFoldersOfRunsThatWereKilled) {
   for (const char* name : {".kinecal-abc123", ".kinecal-def456"}) {
     fs::create_directory(folder_ / name);

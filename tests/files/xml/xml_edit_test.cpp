@@ -26,6 +26,7 @@ TEST(XmlEdit, InsertionsAtOnePlaceKeepTheirOrder) {
 TEST(XmlEdit, TextInAnAttributeIsEscapedForItsQuotes) {
   EXPECT_EQ(xml_attribute_text("a & b < 'c' \"d\"", '"'), "a &amp; b &lt; 'c' &quot;d&quot;");
   EXPECT_EQ(xml_attribute_text("'c' \"d\"", '\''), "&apos;c&apos; \"d\"");
+  EXPECT_EQ(xml_attribute_text("a\tb\n", '"'), "a&#9;b&#10;") << "no blanks";
 }
 
 TEST(XmlEdit, AStartTagEndsAtItsOwnBracket) {

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "support/error_of.hpp"
+
 namespace kinecal {
 namespace {
 
@@ -17,6 +19,20 @@ TEST(XmlText, PlacesAreBytesAndLinesOfTheText) {
   EXPECT_EQ(text.substr(source.offset(joint), 6), "<joint");
   EXPECT_EQ(source.place(joint).str(), "r.urdf:5");
   EXPECT_EQ(source.place({}).str(), "r.urdf");
+}
+
+std::string nested(int times) {
+  std::string text = "<robot name='r'>\n";
+  for (int i = 0; i < times; ++i) text += "<a>\n";
+  for (int i = 0; i < times; ++i) text += "</a>";
+  return text + "</robot>";
+}
+
+/// Where others read it by recursion.
+TEST(XmlText, NestedTooDeeplyIsAnErrorWithTheLine) {
+  EXPECT_NO_THROW(detail::XmlText(nested(150), "r.urdf", {"a URDF", "robot"}));
+  EXPECT_EQ(test::error_of([] { detail::XmlText(nested(60000), "r.urdf", {"a URDF", "robot"}); }),
+            "r.urdf:201: elements are nested too deeply");
 }
 
 }  // namespace

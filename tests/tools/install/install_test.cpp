@@ -355,6 +355,23 @@ TEST_F(Install, RefusesAPathThatALaunchFileWouldSubstitute) {
                InputError);
 }
 
+/// A sensor may have any name, and its file has the same.
+TEST_F(Install, RefusesAFileThatALaunchFileWouldSubstitute) {
+  fs::rename(folder_ / "out/rgb_camera.yaml", folder_ / "out/rgb_$(env HOME).yaml");
+  spoil("out/calibration_2026_01_02_03_04_05.yaml", "rgb_camera.yaml", "rgb_$(env HOME).yaml");
+  expect_refused(AllOf(HasSubstr("robot.launch:8: arg 'rgb_camera_info_url': 'file://"),
+                       HasSubstr("rgb_$(env HOME)_2026"), HasSubstr("rename")));
+}
+
+TEST_F(Install, CountsItsBackupsAndNotFilesWithHugeNumbers) {
+  write("robot/robot.launch.backup_2147483647", "<launch>other</launch>");
+  EXPECT_EQ(install().backup, "robot.launch.backup_1");
+  restore();
+  EXPECT_EQ(launch(), test::kLaunch);
+  write("robot/robot.launch.backup_999999999", "<launch>last</launch>");
+  expect_refused(HasSubstr("robot.launch.backup_999999999 has the last number; rename it"));
+}
+
 TEST_F(Install, AFolderThatCannotBeWrittenToIsLeftAlone) {
   if (geteuid() == 0) GTEST_SKIP() << "root writes everywhere";
   fs::permissions(folder_ / "robot", fs::perms(0555));

@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <pugixml.hpp>
 #include <string>
 #include <vector>
 
 #include "kinecal/tools/install/launch_names.hpp"
+#include "support/hostile_names.hpp"
 
 namespace kinecal {
 namespace {
@@ -137,6 +139,32 @@ TEST(LaunchText, RefusesWhatIsNotALaunchFile) {
               StartsWith("robot.launch:1: the root element is <robot>; a launch file begins with"));
   EXPECT_THAT(refusal("def generate_launch_description():", {}), HasSubstr("malformed XML"));
   EXPECT_THAT(refusal("", {}), HasSubstr("is empty"));
+}
+
+/// roslaunch evaluates $(...), and nothing escapes it.
+TEST(LaunchText, HoldsEveryValueButSubstitutionsAndLineEnds) {
+  const std::string text = "<launch>\n<arg name='a' default=''/></launch>";
+  for (const std::string& name : test::kHostileNames) {
+    if (name.find('$') != std::string::npos) {
+      EXPECT_THAT(refusal(text, {arg("a", "file:///" + name)}),
+                  AllOf(HasSubstr("robot.launch:2: arg 'a': 'file:///" + name + "' cannot stand"),
+                        HasSubstr("rename")));
+      continue;
+    }
+    pugi::xml_document launch;
+    ASSERT_TRUE(launch.load_string(with(text, {arg("a", "file:///" + name)}).c_str())) << name;
+    EXPECT_EQ(launch.select_node("//arg/@default").attribute().value(), "file:///" + name);
+  }
+  for (const std::string& name : test::kRefusedNames) {
+    EXPECT_THAT(refusal(text, {arg("a", name)}), HasSubstr("cannot stand")) << name;
+  }
+}
+
+TEST(LaunchText, NamesAnOptionAsItIsTyped) {
+  LaunchSetting setting = arg("b", "1");
+  setting.key = "left camera;_rgb";
+  EXPECT_THAT(refusal("<launch><arg name='a' default=''/></launch>", {setting}),
+              HasSubstr("--name 'left camera;_rgb=NAME' names another one"));
 }
 
 std::string names_refusal(const std::vector<std::string>& given) {

@@ -10,18 +10,9 @@
 #include <vector>
 
 #include "kinecal/files/urdf/urdf_text.ipp"
+#include "kinecal/text/shell_command.hpp"
 
 namespace kinecal::detail {
-
-/// A name quoted as one word for a shell.
-[[nodiscard]] inline std::string shell_word(const std::string& name) {
-  constexpr std::string_view kPlain =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./:@%+-";
-  if (name.find_first_not_of(kPlain) == std::string::npos && !name.starts_with('-')) return name;
-  std::string word = name.starts_with('-') ? "'./" : "'";
-  for (const char c : name) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
 
 std::string xacro_command(const std::string& file) {
   std::filesystem::path stem = std::filesystem::path(file).filename();
@@ -32,7 +23,7 @@ std::string xacro_command(const std::string& file) {
   for (int n = 2; std::filesystem::exists(expanded, failed); ++n) {
     expanded = fmt::format("{}_expanded_{}.urdf", stem.string(), n);
   }
-  return fmt::format("xacro {} > {}", shell_word(file), shell_word(expanded));
+  return ShellCommand{"xacro", shell_file(file)}.str() + " > " + shell_word(shell_file(expanded));
 }
 
 /// Error: remnants that may hold a part of the robot.

@@ -5,6 +5,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/files/results/file_set.hpp"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <deque>
 #include <filesystem>
 #include <map>
@@ -40,6 +43,17 @@ void keep_file(const std::filesystem::path& file, const std::filesystem::path& k
   if (error) throw OutputError(file.string() + ": cannot be kept: " + error.message());
 }
 
+/// Gives a file its name, unless another has it.
+void place_new(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::link(from.c_str(), to.c_str()) == 0) return;
+  if (errno == EEXIST) {
+    throw OutputError(to.string() +
+                      ": has appeared meanwhile and is kept; use --force to replace it, "
+                      "or choose another name");
+  }
+  rename_file(from, to);  // a file system without links
+}
+
 void put_back(const std::filesystem::path& kept, const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::exists(kept)) {
@@ -64,10 +78,14 @@ class StagedFiles {
   }
 
   /// @throws OutputError  some files may then have their names: put_back()
-  void place() {
+  void place(Existing existing) {
     for (const std::string& name : names_) {
-      keep_file(folder_ / name, staging_ / (name + kBefore));
-      rename_file(staging_ / name, folder_ / name);
+      if (existing == Existing::kept) {
+        place_new(staging_ / name, folder_ / name);
+      } else {
+        keep_file(folder_ / name, staging_ / (name + kBefore));
+        rename_file(staging_ / name, folder_ / name);
+      }
       placed_.push_back(name);
     }
   }
@@ -125,13 +143,13 @@ OutputFolder::~OutputFolder() {
   }
 }
 
-void OutputFolder::write(const std::vector<OutputFile>& files) {
+void OutputFolder::write(const std::vector<OutputFile>& files, Existing existing) {
   const detail::StagingFolder staging = stage();
   detail::StagedFiles staged(folder_, staging.path());
   staged.stage(files);
   const detail::FolderLock lock(folder_);
   try {
-    staged.place();
+    staged.place(existing);
   } catch (const OutputError&) {
     staged.put_back();
     throw;
@@ -157,7 +175,7 @@ void write_file_sets(const std::vector<FileSet>& sets) {
   }
   for (const auto& [folder, files] : by_folder) locks.emplace_back(folder);
   try {
-    for (detail::StagedFiles& of : staged) of.place();
+    for (detail::StagedFiles& of : staged) of.place(Existing::replaced);
   } catch (const OutputError&) {
     for (const detail::StagedFiles& of : staged) of.put_back();
     throw;

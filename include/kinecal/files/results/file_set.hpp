@@ -14,6 +14,12 @@ namespace detail {
 class StagingFolder;
 }  // namespace detail
 
+/// What becomes of a file of the same name.
+enum class Existing {
+  replaced,
+  kept  ///< it is an error, also if the file appears while others are written
+};
+
 /// A folder for a set of files.  The constructor checks that it is writable, before any work is
 /// done, and creates it if it is missing.
 class OutputFolder {
@@ -29,9 +35,9 @@ class OutputFolder {
   /// The folder.
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
 
-  /// Writes all files or none; replaces files of the same name.
+  /// Writes all files or none.
   /// @throws OutputError  naming the file; the folder is then unchanged
-  void write(const std::vector<OutputFile>& files);
+  void write(const std::vector<OutputFile>& files, Existing existing = Existing::replaced);
 
  private:
   void create();

@@ -15,7 +15,7 @@
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
-#include "kinecal/text/shell_word.hpp"
+#include "kinecal/text/shell_command.hpp"
 
 namespace kinecal {
 
@@ -44,38 +44,40 @@ struct CalibratedMount {
       numbers_text(rpy_from_rotation(mount.parent_T_child.rotation)));
 }
 
-/// Arguments of static_transform_publisher, each as `word` writes it.
-template <class Word>
-[[nodiscard]] std::vector<std::string> publisher_arguments(const CalibratedMount& mount,
-                                                           const Word& word) {
+/// Arguments of static_transform_publisher.
+[[nodiscard]] std::vector<std::string> publisher_arguments(const CalibratedMount& mount) {
   const Vector3<double>& t = mount.parent_T_child.translation;
   const Eigen::Vector4d q = quaternion(mount.parent_T_child.rotation).normalized();
-  std::vector<std::string> all;
-  const auto add = [&](const char* name, const std::string& value) {
-    all.push_back(word(name));
-    all.push_back(word(value));
-  };
   const auto number = [](double value) { return fmt::format("{}", value); };
-  add("--x", number(t.x()));
-  add("--y", number(t.y()));
-  add("--z", number(t.z()));
-  add("--qx", number(q(0)));
-  add("--qy", number(q(1)));
-  add("--qz", number(q(2)));
-  add("--qw", number(q(3)));
-  add("--frame-id", mount.joint->parent);
-  add("--child-frame-id", mount.joint->child);
-  return all;
+  return {"--x",
+          number(t.x()),
+          "--y",
+          number(t.y()),
+          "--z",
+          number(t.z()),
+          "--qx",
+          number(q(0)),
+          "--qy",
+          number(q(1)),
+          "--qz",
+          number(q(2)),
+          "--qw",
+          number(q(3)),
+          "--frame-id",
+          mount.joint->parent,
+          "--child-frame-id",
+          mount.joint->child};
 }
 
 [[nodiscard]] std::string shell_text(const CalibratedMount& mount) {
-  const auto word = [](const std::string& text) { return shell_word(text); };
-  return fmt::format("ros2 run tf2_ros static_transform_publisher {}\n",
-                     fmt::join(publisher_arguments(mount, word), " "));
+  ShellCommand command{"ros2", "run", "tf2_ros", "static_transform_publisher"};
+  for (const std::string& word : publisher_arguments(mount)) command.add({word});
+  return command.str() + "\n";
 }
 
 [[nodiscard]] std::string launch_text(const CalibratedMount& mount) {
-  const auto word = [](const std::string& text) { return json_text(Json(text)); };
+  std::vector<std::string> arguments = publisher_arguments(mount);
+  for (std::string& word : arguments) word = json_text(Json(word));
   return fmt::format(
       "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
       "def generate_launch_description():\n"
@@ -83,16 +85,18 @@ template <class Word>
       "        Node(\n            package=\"tf2_ros\",\n"
       "            executable=\"static_transform_publisher\",\n            output=\"log\",\n"
       "            arguments=[\n                {}],\n        ),\n    ])\n",
-      fmt::join(publisher_arguments(mount, word), ",\n                "));
+      fmt::join(arguments, ",\n                "));
 }
 
-/// The launch file of ROS 1, whose `args` are split as a shell does.
+/// The launch file of ROS 1, whose `args` are split as a shell does, after what `$(` begins was substituted.
 [[nodiscard]] std::string ros1_launch_text(const CalibratedMount& mount) {
   const Vector3<double>& t = mount.parent_T_child.translation;
   const Eigen::Vector4d q = quaternion(mount.parent_T_child.rotation).normalized();
-  const std::string args =
-      fmt::format("{} {} {} {} {}", numbers_text(t), numbers_text(q.head<3>()), q(3),
-                  shell_word(mount.joint->parent), shell_word(mount.joint->child));
+  std::string args = fmt::format("{} {} {} {}", numbers_text(t), numbers_text(q.head<3>()), q(3),
+                                 ShellCommand{mount.joint->parent, mount.joint->child}.str());
+  for (std::size_t at = 0; (at = args.find("$(", at)) != std::string::npos;) {
+    args.insert(at + 1, "''");  // the quotes end and begin again: the word stays the same
+  }
   return fmt::format(
       "<launch>\n  <node pkg=\"tf2_ros\" type=\"static_transform_publisher\" "
       "name=\"kinecal_broadcaster\" args=\"{}\"/>\n</launch>\n",

@@ -19,6 +19,7 @@
 #include "kinecal/files/urdf/urdfdom.ipp"
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/kinematics/chain.hpp"
+#include "kinecal/text/characters.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
 
@@ -66,7 +67,7 @@ void check_urdf_joint(const UrdfText& source, pugi::xml_node joint, Diagnostics&
        {name, std::string(joint.child("parent").attribute("link").value()),
         std::string(joint.child("child").attribute("link").value())}) {
     if (!has_control_characters(text)) continue;
-    diagnostics.error(place, "the name '" + printable(text) + "' has a control character");
+    diagnostics.error(place, "the name '" + one_line(text) + "' has a control character");
   }
   (void)source.vector(joint.child("origin"), "xyz", diagnostics);
   (void)source.vector(joint.child("origin"), "rpy", diagnostics);
@@ -111,7 +112,7 @@ void check_urdf_joints(const UrdfText& source) {
   const std::string robot = source.robot().attribute("name").value();
   if (has_control_characters(robot)) {
     diagnostics.error(source.place(source.robot()),
-                      "the name '" + printable(robot) + "' has a control character");
+                      "the name '" + one_line(robot) + "' has a control character");
   }
   std::vector<Joint> joints;
   for (pugi::xml_node node : source.robot().children("joint")) {

@@ -45,6 +45,8 @@ struct TextEdit {
       escaped += "&lt;";
     } else if (c == quote) {
       escaped += c == '"' ? "&quot;" : "&apos;";
+    } else if (c == '\t' || c == '\n' || c == '\r') {  // as they are, they would be read as blanks
+      escaped += "&#" + std::to_string(static_cast<int>(c)) + ";";
     } else {
       escaped += c;
     }

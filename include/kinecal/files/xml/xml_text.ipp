@@ -26,7 +26,7 @@ struct XmlKind {
 class XmlText {
  public:
   /// @param file  name of the file for messages
-  /// @throws InputError  if the text is empty, not XML, not UTF-8 or has another root
+  /// @throws InputError  if the text is empty, not XML, not UTF-8, nested too deeply or has another root
   XmlText(std::string text, std::string file, const XmlKind& kind)
       : text_(std::move(text)), file_(std::move(file)) {
     if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
@@ -43,6 +43,7 @@ class XmlText {
       const SourceLocation place{file_, line(static_cast<std::size_t>(result.offset))};
       throw InputError(place.str() + ": malformed XML: " + result.description());
     }
+    check_depth();
     if (root().name() != kind.root) {
       throw InputError(place(root()).str() + ": the root element is <" + root().name() + ">; " +
                        kind.what + " begins with <" + kind.root + ">");
@@ -64,6 +65,22 @@ class XmlText {
   }
 
  private:
+  /// Readers of the same text, such as urdfdom, take an element inside another by recursion.
+  void check_depth() {
+    struct Walker : pugi::xml_tree_walker {
+      bool for_each(pugi::xml_node& node) override {
+        constexpr int kDeepest = 200;
+        if (depth() < kDeepest) return true;
+        too_deep = node;
+        return false;
+      }
+      pugi::xml_node too_deep;
+    } walker;
+    if (!document_.traverse(walker)) {
+      throw InputError(place(walker.too_deep).str() + ": elements are nested too deeply");
+    }
+  }
+
   [[nodiscard]] int line(std::size_t offset) const {
     const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text_.size()));
     return 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));

@@ -24,13 +24,15 @@ namespace kinecal::detail {
   const Observation *of_target = sample.observation(target),
                     *of_camera = sample.observation(camera);
   TargetView view;
+  double height = 0.0;  // of the target's plane
   if (of_target == nullptr || of_camera == nullptr) return view;
   const std::size_t count = std::min(of_target->features.size(), of_camera->features.size());
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3<double>&on = of_target->features[i].point, &seen = of_camera->features[i].point;
     if (!on.allFinite() || !seen.allFinite()) continue;
     constexpr double kFlat = 1e-6;  // metres
-    if (std::abs(on.z() - of_target->features[0].point.z()) > kFlat) return {};
+    if (view.plane.empty()) height = on.z();
+    if (std::abs(on.z() - height) > kFlat) return {};
     view.plane.emplace_back(on.head<2>());
     view.pixels.emplace_back(seen.head<2>());
   }

@@ -14,6 +14,7 @@
 
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/chain.hpp"
+#include "kinecal/text/shell_command.hpp"
 #include "kinecal/tools/init/possible_targets.hpp"
 #include "kinecal/tools/init/recorded_joints.ipp"
 #include "kinecal/tools/init/robot_parts.hpp"
@@ -69,10 +70,11 @@ void check_no_pixels(const std::vector<const SeenSensor*>& chains) {
         sensor->first.begin(), sensor->first.end(),
         [](const Feature& feature) { return feature.point.cwiseAbs().maxCoeff() > kMost; });
     if (!sensor->varies || !sensor->in_pixels || !is_far) continue;
-    throw InputError("--from: sensor '" + sensor->name +
-                     "' has no camera_info, but its features look like pixels; record it, or give "
-                     "'--camera " +
-                     sensor->name + "=FILE' to kinecal identify or calibrate");
+    throw InputError(
+        "--from: sensor '" + sensor->name +
+        "' has no camera_info, but its features look like pixels; record it, or give " +
+        ShellCommand().add_option("--camera", {sensor->name + "=FILE"}).str() +
+        " to kinecal identify or calibrate");
   }
 }
 

@@ -48,16 +48,6 @@ namespace {
   }
 }
 
-/// Rejects paths that a launch file cannot contain: roslaunch substitutes $(...) and ${...}, and
-/// XML does not allow control characters.
-void check_path(const std::filesystem::path& folder) {
-  for (const char c : folder.string()) {
-    if (c != '$' && static_cast<unsigned char>(c) >= 0x20) continue;
-    throw InputError(folder.string() +
-                     ": a path with '$' or control characters cannot stand in a launch file");
-  }
-}
-
 /// Rejects a launch file that names missing files of its folder.
 void check_named_files(const std::filesystem::path& launch) {
   std::string missing;
@@ -82,7 +72,6 @@ Installation install(const ResultFolder& result, const std::filesystem::path& fo
                      Diagnostics& diagnostics) {
   detail::LaunchFolder target(folder, launch);
   target.remove_leftovers();
-  detail::check_path(target.path());
   const detail::LaunchText old(detail::read_text_file(target.launch()), target.launch().string());
   const detail::InstalledFiles files = detail::files_for(result, target.path());
   const std::string text =

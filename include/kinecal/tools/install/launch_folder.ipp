@@ -60,6 +60,10 @@ class LaunchFolder {
     // A backup equal to the launch file comes from a run that stopped between the two.
     int n = newest_backup();
     if (n == 0 || read_text_file(folder_ / backup_name(n)) != read_text_file(launch())) {
+      if (n == kMostBackups) {
+        throw OutputError(launch().string() + ": " + backup_name(n) +
+                          " has the last number; rename it");
+      }
       keep(staging, backup_name(++n));
       placed.names.push_back(backup_name(n));
     }
@@ -109,6 +113,7 @@ class LaunchFolder {
 
  private:
   static constexpr const char* kStaging = ".kinecal-install";
+  static constexpr int kMostBackups = 999'999'999;  ///< files with larger numbers are none
 
   /// A temporary folder.  Its name is always the same, so that interrupted runs do not pile up.
   struct Staging {
@@ -177,7 +182,7 @@ class LaunchFolder {
       int n = 0;
       const char* const end = name.data() + name.size();
       const auto [stop, error] = std::from_chars(name.data() + start.size(), end, n);
-      if (error == std::errc() && stop == end) newest = std::max(newest, n);
+      if (error == std::errc() && stop == end && n <= kMostBackups) newest = std::max(newest, n);
     }
     return newest;
   }

@@ -78,9 +78,8 @@ class LaunchSettings {
     keys_.insert(full);
     const auto name = names_.find(full);
     if (name == names_.end()) {
-      diagnostics_.warnings.push_back(full +
-                                      " is not set: it has no name in the launch file; --name " +
-                                      full + "=NAME gives it one");
+      diagnostics_.warnings.push_back(full + " is not set: it has no name in the launch file; " +
+                                      name_option(full + "=NAME") + " gives it one");
     } else if (!name->second.empty()) {
       settings_.push_back({full, element, name->second, attribute, value});
     }

@@ -19,7 +19,9 @@
 
 #include "kinecal/files/xml/xml_edit.ipp"
 #include "kinecal/files/xml/xml_text.ipp"
+#include "kinecal/text/characters.hpp"
 #include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/shell_command.hpp"
 
 namespace kinecal::detail {
 
@@ -27,6 +29,11 @@ enum class LaunchElement { param, arg };
 
 [[nodiscard]] constexpr std::string_view to_string(LaunchElement element) {
   return element == LaunchElement::param ? "param" : "arg";
+}
+
+/// The option that names a setting, as it is typed: --name KEY=NAME.
+[[nodiscard]] inline std::string name_option(const std::string& key_and_name) {
+  return ShellCommand().add_option("--name", {key_and_name}).str();
 }
 
 /// A value for a <param> or an <arg>.
@@ -37,6 +44,12 @@ struct LaunchSetting {
   std::string attribute;  ///< holds the value: value, textfile or default
   std::string value;      ///< without escapes
 };
+
+/// False for what a launch file cannot contain: roslaunch substitutes $(...) and ${...}, also in file names, and XML does
+/// not allow control characters.
+[[nodiscard]] inline bool can_be_in_launch_file(std::string_view value) {
+  return value.find('$') == std::string_view::npos && one_line(value) == value;
+}
 
 class LaunchText : public XmlText {
  public:
@@ -49,8 +62,8 @@ class LaunchText : public XmlText {
   [[nodiscard]] pugi::xml_node find(const LaunchSetting& setting, Diagnostics& diagnostics) const {
     const std::vector<Named> all = elements(setting.element);
     const std::string what = subject(setting);
-    const std::string way_out = "--name " + setting.key + "=NAME names another one, --name " +
-                                setting.key + "= leaves it out";
+    const std::string way_out = name_option(setting.key + "=NAME") + " names another one, " +
+                                name_option(setting.key + "=") + " leaves it out";
     std::vector<pugi::xml_node> found;
     for (const bool passed : {false, true}) {
       for (const Named& named : all) {
@@ -111,6 +124,12 @@ class LaunchText : public XmlText {
     if (old == nullptr) {
       return diagnostics.error(place(element), subject(setting) + " has no " + setting.attribute +
                                                    "=\"...\" to be replaced");
+    }
+    if (!can_be_in_launch_file(setting.value)) {
+      return diagnostics.error(
+          place(element), subject(setting) + ": '" + setting.value +
+                              "' cannot stand in a launch file, which has no escape for '$' and "
+                              "control characters; rename the file or its folder");
     }
     // An <arg> that is passed to an <include>, or constant, has a value, not a default.
     const bool is_arg = setting.element == LaunchElement::arg;
