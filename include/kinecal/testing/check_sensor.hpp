@@ -75,7 +75,7 @@ class SensorCheck {
                                     const Values& values, const Jets& jets,
                                     bool smooth = false) const {
     const auto by_jets = jets(input, sensor_);
-    using Found = std::decay_t<decltype(by_jets)>;
+    using AsJets = std::decay_t<decltype(by_jets)>;
     const Eigen::MatrixXd value = values(input, sensor_), said = by_jets.derivatives;
     if (!value.allFinite()) return {whose(function + "it is not a number") + input.text()};
     if (!said.allFinite()) {
@@ -83,14 +83,14 @@ class SensorCheck {
               Named{"by jets", said}.text() + input.text()};
     }
     const auto at = [&](int k, double step) -> Eigen::MatrixXd {
-      return values(input.moved(k + kOwn - Found::kN, step), sensor_);
+      return values(input.moved(k + kOwn - AsJets::kN, step), sensor_);
     };
     const auto twice = [&](int k, double step) { return Eigen::MatrixXd(at(k, 2.0 * step) / 2.0); };
-    const Eigen::MatrixXd found = central_differences<Found::kM, Found::kN>(at);
+    const Eigen::MatrixXd found = central_differences<AsJets::kM, AsJets::kN>(at);
     const Verdict v =
         compare_derivatives(whose(function), {"by jets", said}, found, largest(value));
     if (!v && smooth) {
-      const Eigen::MatrixXd other = central_differences<Found::kM, Found::kN>(twice);
+      const Eigen::MatrixXd other = central_differences<AsJets::kM, AsJets::kN>(twice);
       if (!compare_derivatives("", {"", other}, found, largest(value))) return kLawsHold;
     }
     return v ? v : Verdict{v.text + input.text()};
