@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/sensors/sensor_checks.hpp"
 #include "kinecal/testing/field_of_view.hpp"
 #include "kinecal/testing/sensor_input.hpp"
 #include "kinecal/testing/typical_observations.hpp"
@@ -182,17 +183,20 @@ class SensorCheck {
 /// Parameters are within 0.05 of their initial values.
 /// @param seen  recorded observations.  Default: two with 16 features each: points 0.5 to 2 m in
 ///              front of the sensor, pixels, readings of 0.5 to 2; with a camera of 640 x 480
-///              pixels, once rectified and once distorted.
+///              pixels, once without distortion and once distorted.
 /// @throws SettingsError  if the sensor cannot use an observation
-template <Sensor M>
+template <class M>
 [[nodiscard]] Verdict check_sensor(
     const M& sensor, const std::vector<Observation>& seen = detail::typical_observations<M>()) {
-  const auto inputs = detail::SensorInput<M, double>::of(sensor, seen);
-  const detail::SensorCheck<M> check(sensor);
-  if constexpr (PlacingSensor<M>) {
-    if (const Verdict v = check.places(inputs); !v) return v;
+  [[maybe_unused]] const detail::CheckSensorType<M> check_of_type{};
+  if constexpr (Sensor<M>) {
+    const auto inputs = detail::SensorInput<M, double>::of(sensor, seen);
+    const detail::SensorCheck<M> check(sensor);
+    if constexpr (PlacingSensor<M>) {
+      if (const Verdict v = check.places(inputs); !v) return v;
+    }
+    if constexpr (PredictingSensor<M>) return check.predicts(inputs);
   }
-  if constexpr (PredictingSensor<M>) return check.predicts(inputs);
   return kLawsHold;
 }
 
