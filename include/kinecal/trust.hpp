@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#if defined(KINECAL_HEADER_ONLY) && !defined(KINECAL_LINKS_TRUST)
+#error \
+    "kinecal: trust.hpp is not header-only; link kinecal::solve, and do not define KINECAL_HEADER_ONLY"
+#endif
+
 #include "kinecal/trust/alike_pixels.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/assess_shards.hpp"
