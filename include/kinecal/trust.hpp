@@ -26,6 +26,7 @@
 #include "kinecal/trust/identify.hpp"
 #include "kinecal/trust/judge.hpp"
 #include "kinecal/trust/judge_crate.hpp"
+#include "kinecal/trust/judge_input.hpp"
 #include "kinecal/trust/judge_shards.hpp"
 #include "kinecal/trust/lens_pattern.hpp"
 #include "kinecal/trust/measured_numbers.hpp"
