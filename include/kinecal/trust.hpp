@@ -3,8 +3,7 @@
 #pragma once
 
 #if defined(KINECAL_HEADER_ONLY) && !defined(KINECAL_LINKS_TRUST)
-#error \
-    "kinecal: trust.hpp is not header-only; link kinecal::solve, and do not define KINECAL_HEADER_ONLY"
+#error "kinecal: trust.hpp is not header-only; link kinecal::solve without KINECAL_HEADER_ONLY"
 #endif
 
 #include "kinecal/trust/alike_pixels.hpp"

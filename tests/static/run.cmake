@@ -17,7 +17,7 @@ foreach(file right users_names)
                   COMMAND_ERROR_IS_FATAL ANY)
 endforeach()
 
-execute_process(COMMAND ${call} -DKINECAL_HEADER_ONLY -x c++ -include kinecal/trust.hpp /dev/null
+execute_process(COMMAND ${call} -Wfatal-errors -DKINECAL_HEADER_ONLY -x c++ -include kinecal/trust.hpp /dev/null
                 RESULT_VARIABLE result ERROR_VARIABLE output)
 if(result EQUAL 0 OR NOT output MATCHES "kinecal: trust.hpp is not header-only. link kinecal::solve")
   message(FATAL_ERROR "trust.hpp with KINECAL_HEADER_ONLY: ${output}")
