@@ -162,6 +162,7 @@ include(KinecalOptional)
 include(KinecalPage)
 if(KINECAL_HEADER_ONLY)
   target_compile_definitions(kinecal_core INTERFACE KINECAL_HEADER_ONLY)
+  target_compile_definitions(kinecal_solve PUBLIC KINECAL_LINKS_TRUST)  # the library has trust/ still
 endif()
 # What links the libraries is compiled and linked as they are.
 target_compile_options(kinecal_core INTERFACE $<$<BOOL:${KINECAL_NATIVE}>:-march=native>)

@@ -96,7 +96,7 @@ void check_same_robot(const Assembled& a, const Assembled& b) {
 std::string lens_of_parameter(const Assembled& of, const std::string& name) {
   for (const ModelConfig& model : detail::models_of(of.result.config)) {
     const SensorEntry* entry = entry_of(model);
-    const bool has_lens = entry != nullptr && entry->has_lens;
+    const bool has_lens = entry != nullptr && !entry->lenses.empty();
     if (has_lens && of.owner(name) == model.param_name) return model.lens;
   }
   return "";

@@ -12,10 +12,6 @@
 #include <utility>
 #include <vector>
 
-#ifdef KINECAL_HAS_GLOG
-#include <glog/logging.h>
-#endif
-
 #include "commands.hpp"
 #include "describe.hpp"
 #include "kinecal/text/nearest_name.hpp"
@@ -1127,9 +1123,6 @@ int run(int argc, char** argv) {
 namespace kinecal {
 
 int run_program(int argc, char** argv) {
-#ifdef KINECAL_HAS_GLOG
-  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres logs each step that it has to shorten
-#endif
   try {
     return run(argc, argv);
   } catch (const std::exception& e) {

@@ -1,6 +1,6 @@
 // The program `kinecal` as a function: link kinecal::program.
 //
-// A program of your own registers its sensors and error blocks (io/register.hpp) and calls it.  It
+// A program of your own registers its sensors and error blocks (config/register.hpp) and calls it.  It
 // then has all commands of kinecal, with configurations that may name these types.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#if defined(KINECAL_HEADER_ONLY) && !defined(KINECAL_LINKS_TRUST)
+#error "kinecal: trust.hpp is not header-only; link kinecal::solve without KINECAL_HEADER_ONLY"
+#endif
+
 #include "kinecal/trust/alike_pixels.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/assess_shards.hpp"
@@ -21,6 +25,7 @@
 #include "kinecal/trust/identify.hpp"
 #include "kinecal/trust/judge.hpp"
 #include "kinecal/trust/judge_files.hpp"
+#include "kinecal/trust/judge_input.hpp"
 #include "kinecal/trust/judge_shards.hpp"
 #include "kinecal/trust/lens_pattern.hpp"
 #include "kinecal/trust/measured_numbers.hpp"

@@ -173,6 +173,6 @@ struct LedScene {
     return all;
   }
 };
-static_assert(Camera<LedScene> && Lamp<LedScene>);
+static_assert(RobotCamera<LedScene> && RobotLamp<LedScene>);
 
 }  // namespace kinecal

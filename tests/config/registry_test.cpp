@@ -1,12 +1,16 @@
-// An error block of one's own with parameters and conditions, from YAML to the result.
+// An error block with parameters and conditions, and a lens, of a user's own, from YAML to the result.
 #include "kinecal/config/registry.hpp"
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
+#include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/register.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "support/calibrated.hpp"
+#include "support/division_lens.hpp"
 #include "support/open_scene.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -84,6 +88,91 @@ TEST_F(RegisteredBlock, NamesASampleWithoutAConditionOfIt) {
     EXPECT_THAT(e.what(), HasSubstr("s.yaml:"));
     EXPECT_THAT(e.what(), HasSubstr("error block 'bar': condition 'load' is not in the sample"));
   }
+}
+
+class RegisteredLens : public test::FolderTest {
+ protected:
+  using Camera = LensCamera<test::Division>;
+  static constexpr double kRecorded = -0.05, kTrue = -0.12;
+
+  RegisteredLens() {
+    const auto& lenses = registry().sensor("camera2d")->lenses;
+    if (std::find(lenses.begin(), lenses.end(), "division") == lenses.end()) {
+      register_sensor(Camera{});
+    }
+  }
+  void write_config(const std::string& lens) {
+    write("c.yaml", R"(base_link: base_link
+models:
+ - {name: arm, type: chain3d, frame: hand}
+ - {name: eye, type: camera2d, frame: camera_optical_frame)" +
+                        lens + R"(}
+free_params: [eye_fx, eye_k]
+error_blocks:
+ - {name: pixels, type: chain3d_to_camera2d, model_3d: arm, model_2d: eye, sigma: 0.1}
+)");
+  }
+  /// What a camera of this lens sees of points of the hand.
+  [[nodiscard]] static std::vector<Sample> samples() {
+    const Robot robot = test::mobile_manipulator();
+    const RuntimeChain hand = make_chain(robot, "base_link", "hand"),
+                       eye = make_chain(robot, "base_link", "camera_optical_frame");
+    CameraInfo info;
+    info.width = 640;
+    info.height = 480;
+    info.k = {500, 0, 320, 0, 500, 240, 0, 0, 1};
+    info.distortion_model = "division";
+    info.d = {kRecorded};
+    std::vector<Sample> all;
+    for (int n = 0; n < 8; ++n) {
+      Sample& sample = all.emplace_back();
+      for (const Joint& joint : robot.joints()) {
+        if (!moves(joint.type) || joint.mimic) continue;
+        sample.joint_names.push_back(joint.name);
+        sample.joint_positions.push_back(0.05 * n);
+      }
+      const auto position = [&](const std::string& joint) { return *sample.position(joint); };
+      const Pose<double> hand_T_eye =
+          forward_kinematics(hand, position).inverse() * forward_kinematics(eye, position);
+      Observation arm{"arm", {}}, seen{"eye", {}, info};
+      for (const Vector3<double>& p :
+           {Vector3<double>(-0.3, 0.1, 0.6), Vector3<double>(0.05 * n, -0.2, 0.7)}) {
+        const auto pixel = Camera{}.predict(p, Camera{}.settings(seen),
+                                            Camera::Settings{0.02, 0, 0, 0, kTrue - kRecorded});
+        arm.features.push_back({"hand", hand_T_eye * p});
+        seen.features.push_back({"camera_optical_frame", {pixel.x(), pixel.y(), 0.0}});
+      }
+      sample.observations = {arm, seen};
+    }
+    return all;
+  }
+};
+
+TEST_F(RegisteredLens, IsCalibratedFromYaml) {
+  write_config(", lens: division");
+  const test::Calibrated found =
+      test::calibrate_samples(test::mobile_manipulator(), folder_ / "c.yaml", samples());
+  EXPECT_NEAR(found.result.table["eye_fx"].value, 0.02, 1e-9);
+  EXPECT_NEAR(found.result.table["eye_k"].value, kTrue - kRecorded, 1e-9);
+}
+
+TEST_F(RegisteredLens, IsTakenFromCameraInfoIfTheConfigurationNamesNone) {
+  write_config("");
+  Diagnostics diagnostics;
+  Config config = read_config((folder_ / "c.yaml").string(), diagnostics);
+  std::vector<Sample> recorded = samples();
+  choose_lenses(config, recorded, diagnostics);
+  EXPECT_TRUE(diagnostics.errors.empty());
+  EXPECT_EQ(config.steps.front().models.back().lens, "division");
+}
+
+TEST_F(RegisteredLens, IsNamedAmongTheLensesAndTakenOnce) {
+  write_config(", lens: divison");
+  Diagnostics diagnostics;
+  (void)read_config((folder_ / "c.yaml").string(), diagnostics);
+  EXPECT_THAT(diagnostics.errors, testing::Contains(HasSubstr("did you mean 'division'?")));
+  EXPECT_THROW(register_sensor(Camera{}), std::invalid_argument);
+  EXPECT_THROW(register_sensor(LensCamera<Equidistant>{}), std::invalid_argument);
 }
 
 }  // namespace

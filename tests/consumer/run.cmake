@@ -72,13 +72,21 @@ else()
   list(APPEND options -DCMAKE_PREFIX_PATH=${prefix})
 endif()
 if(MODE STREQUAL install)
-  set(consumer_options -DKINECAL_EXAMPLES=${SOURCE}/examples)
+  set(consumer_options -DKINECAL_EXAMPLES=${prefix}/share/doc/libkinecal-dev/examples)
 endif()
 execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK}/consumer -B ${WORK}/build ${options}
                         ${consumer_options} COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${WORK}/build/consumer COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${WORK}/build/finders COMMAND_ERROR_IS_FATAL ANY)
+
+# The program with a sensor and an error block of a user's own, and the configuration beside it.
+if(MODE STREQUAL install AND PROGRAM)
+  set(examples ${prefix}/share/doc/libkinecal-dev/examples)
+  execute_process(COMMAND ${WORK}/build/own_program check --config ${examples}/own_program/calibrate.yaml
+                          --urdf ${examples}/mobile_manipulator/mobile_manipulator.urdf
+                  COMMAND_ERROR_IS_FATAL ANY)
+endif()
 
 # A calibrator of a user's own: six lines of CMake, forty of C++ and a URDF.
 if(MODE STREQUAL install)

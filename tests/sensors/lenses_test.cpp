@@ -5,6 +5,7 @@
 
 #include "kinecal/sensors/lens_camera.hpp"
 #include "kinecal/testing/check_sensor.hpp"
+#include "support/division_lens.hpp"
 
 #ifdef KINECAL_TEST_OPENCV
 #include <opencv2/calib3d.hpp>
@@ -280,6 +281,22 @@ TEST(Lenses, CoefficientsOfAnotherLensOrNumberAreRefused) {
   tilted.resize(14, 1e-3);
   EXPECT_TRUE(fault(ThinPrism{}, "rational_polynomial", tilted).find("tilt the image plane") !=
               std::string::npos);
+}
+
+TEST(Lenses, ALensOfAUserHasTheCoefficientsOfItsNameInCameraInfo) {
+  using Own = LensCamera<test::Division>;
+  const auto settings = [](const std::string& model, const std::vector<double>& d) {
+    return Own{}.settings({"eye", {}, camera_info(model, d)});
+  };
+  EXPECT_EQ(settings("division", {-0.2})[4], -0.2);
+  EXPECT_EQ(settings("division", {})[4], 0.0);
+  EXPECT_THROW((void)settings("division", {0.1, 0.2}), SettingsError);
+  EXPECT_THROW((void)settings("equidistant", kEquidistant), SettingsError);
+  const CameraInfo now = calibrated(camera_info("division", {-0.2}), test::Division{}, {0.05});
+  EXPECT_EQ(now.distortion_model, "division");
+  EXPECT_EQ(now.d, (std::vector<double>{-0.2 + 0.05}));
+  EXPECT_TRUE(contains_lens("division", "division"));
+  EXPECT_FALSE(contains_lens("division", "plumb_bob"));
 }
 
 }  // namespace

@@ -178,5 +178,25 @@ TEST(CalibrateCrate, RefusesSamplesThatDoNotFit) {
   EXPECT_THROW((void)calibrate(Tracked(), samples), std::invalid_argument) << "no tracker";
 }
 
+TEST(CalibrateCrate, TheValueOfATableIsTheStartAndWhatCountsAsInitial) {
+  constexpr double kStart = 0.3;
+  ParameterTable table = Tracked().table({});
+  table["elbow"].value = kStart;
+  const std::vector<Sample> samples = exact_samples({0.05, 0.4, 0, 0, 0}, 6);
+  SolveOptions none;
+  none.max_num_iterations = 0;
+  EXPECT_EQ(calibrate(Tracked(), table, samples, none).table["elbow"].value, kStart);
+  const auto result = calibrate(Tracked(), table, samples);
+  EXPECT_EQ(result.table["elbow"].initial, kStart);
+  EXPECT_NEAR(result.table["elbow"].value, 0.4, 1e-9);
+
+  Calibration calibration = make_calibration(Tracked(), samples);
+  calibration.table["elbow"].value = kStart;
+  for (const Parameter& parameter : result.table) calibration.begin.push_back(parameter.value);
+  const CalibrationResult again = calibrate(calibration);
+  EXPECT_EQ(again.table["elbow"].initial, kStart);
+  EXPECT_NEAR(again.steps.front().initial_cost, result.steps.front().final_cost, 1e-12);
+}
+
 }  // namespace
 }  // namespace kinecal

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "kinecal/errors.hpp"
 #include "kinecal/evaluation/problem.hpp"
 #include "kinecal/solve/calibrate.hpp"
@@ -503,12 +505,37 @@ TEST(Solve, NamesAResidualWithoutADerivative) {
                       {0.0},
                       {{"arm", {{"arm", {0, 0, 1}}}}, {"camera", {{"camera", {641, 480, 0}}}}},
                       "a.yaml:7"});
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(1);
-  const StepResult result = solve(problem, FreeSet({0}, 1), values);
-  EXPECT_FALSE(result.converged);
-  EXPECT_EQ(result.termination,
-            "failed: a derivative of the residual of 'reprojection' is not defined at the start "
-            "for the sample at a.yaml:7");
+  for (const CostForm form : {CostForm::compressed, CostForm::stacked}) {
+    SolveOptions options;
+    options.form = form;
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(1);
+    testing::internal::CaptureStderr();
+    const StepResult result = solve(problem, FreeSet({0}, 1), values, options);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "Ceres logs what it cannot evaluate";
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.termination,
+              "failed: a derivative of the residual of 'reprojection' is not defined at the start "
+              "for the sample at a.yaml:7");
+  }
+}
+
+/// Of frames in a row only the sum is determined: with hardly any damping, rounding decides.
+TEST(Solve, PrintsNothingWhereManyDirectionsAreUndetermined) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
+  for (const Sample& sample : noisy_samples(20, 1e-3)) problem.add_sample(sample);
+  std::vector<int> all(static_cast<std::size_t>(problem.table().size()));
+  std::iota(all.begin(), all.end(), 0);
+  for (const CostForm form : {CostForm::compressed, CostForm::stacked}) {
+    SolveOptions options;
+    options.form = form;
+    options.max_num_iterations = 60;
+    options.function_tolerance = 0.0;
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+    testing::internal::CaptureStderr();
+    (void)solve(problem, FreeSet(all, problem.table().size()), values, options);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << to_string(form);
+  }
 }
 
 TEST(MakeCalibration, NamesASensorThatIsObservedByNearlyThisName) {

@@ -1,6 +1,7 @@
 # Checks with one compiler what must compile and what must not:
 #   cmake -DCOMPILER=... -DINCLUDES=<folders> -P run.cmake
-# right.cpp compiles; wrong.cpp does not, and gives exactly the errors that it expects.
+# right.cpp and users_names.cpp compile without a warning; wrong.cpp does not compile, and gives exactly the errors
+# that it expects.
 cmake_minimum_required(VERSION 3.25)
 set(call ${CMAKE_COMMAND} -E env LC_ALL=C ${COMPILER} -std=c++20 -fsyntax-only)
 foreach(folder IN LISTS INCLUDES)
@@ -11,7 +12,16 @@ if(version MATCHES "clang")
   list(APPEND call -ferror-limit=0)
 endif()
 
-execute_process(COMMAND ${call} ${CMAKE_CURRENT_LIST_DIR}/right.cpp COMMAND_ERROR_IS_FATAL ANY)
+foreach(file right users_names)
+  execute_process(COMMAND ${call} -Wall -Wextra -Wpedantic -Wshadow -Werror ${CMAKE_CURRENT_LIST_DIR}/${file}.cpp
+                  COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
+
+execute_process(COMMAND ${call} -Wfatal-errors -DKINECAL_HEADER_ONLY -x c++ -include kinecal/trust.hpp /dev/null
+                RESULT_VARIABLE result ERROR_VARIABLE output)
+if(result EQUAL 0 OR NOT output MATCHES "kinecal: trust.hpp is not header-only. link kinecal::solve")
+  message(FATAL_ERROR "trust.hpp with KINECAL_HEADER_ONLY: ${output}")
+endif()
 
 # CMake would read semicolons and brackets as lists.
 function(read_as_text variable)

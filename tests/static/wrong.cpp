@@ -11,6 +11,7 @@
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/solve/calibrate_crate.hpp"
 #include "kinecal/testing/check_block.hpp"
+#include "kinecal/testing/check_sensor.hpp"
 #include "robots/every_joint.hpp"
 #include "robots/fetch_example.hpp"
 
@@ -206,6 +207,16 @@ struct OfFlags {
 };
 Crate<Head, Block<"ground", OfFlags, "camera">> residual_of_flags;
 
+// expect: no sensors deliver the arguments of this error block, or its last ones do not fit: const
+struct TooFewOwn {
+  static constexpr std::array kParameters = {ParameterInfo{"a"}, ParameterInfo{"b"}};
+  template <class S>
+  Vector3<S> operator()(const Vector3<S>& p, const std::array<S, 1>& own) const {
+    return p * own[0];
+  }
+};
+Crate<Head, Block<"ground", TooFewOwn, "camera">> parameters_of_another_number;
+
 // expect: the sensor or block in this parameter does not declare it; a Camera3d or Camera2d has
 Crate<Head, Block<"ground", PointToPlane, "camera">, BlockParameters<"ground", "height">>
     parameter_that_no_block_has;
@@ -246,6 +257,47 @@ Crate<Arm, Head, HandEye, Block<"hand_eye", PlaneToPlane, "camera", "arm">> bloc
 Crate<Arm, Head, JointOffset<"elbow_flex_joint">, JointOffset<"head_pan_joint">, HandEye,
       PriorOn<"small", "elbow_flex_joint">, PriorOn<"small", "head_pan_joint">>
     priors_of_one_name;
+
+// ---- sensors of a user's own
+
+// expect: this sensor has no name; write in it static constexpr std::string_view kType
+struct WithoutName {
+  template <class S, class Q>
+  Vector3<S> place(const Measurement<WithoutName, Q>& m, const std::array<S, 0>&) const {
+    return m.point.template cast<S>();
+  }
+};
+Crate<Arm, SensorOn<"camera", OnHead, WithoutName>, HandEye> sensor_without_name;
+
+// expect: place() of this sensor does not return a Vector3<S>, Ray<S>, Pose<S> or Reading<S>
+struct PlacesDoubles {
+  static constexpr std::string_view kType = "places_doubles";
+  template <class S, class Q>
+  Vector3<Q> place(const Measurement<PlacesDoubles, Q>& m, const std::array<S, 0>&) const {
+    return m.point;
+  }
+};
+Crate<Arm, SensorOn<"camera", OnHead, PlacesDoubles>, HandEye> sensor_in_double;
+
+// expect: this sensor has neither place(measurement, parameters) nor predict(point,
+struct WithoutParameters {
+  static constexpr std::string_view kType = "without_parameters";
+  template <class Q>
+  Vector3<Q> place(const Measurement<WithoutParameters, Q>& m) const {
+    return m.point;
+  }
+};
+Crate<Arm, SensorOn<"camera", OnHead, WithoutParameters>, HandEye> sensor_without_parameters;
+
+// expect: this error block is given a sensor of the wrong kind, which does not deliver what its
+struct Wire {
+  static constexpr std::string_view kType = "wire";
+  template <class S, class Q>
+  Reading<S> place(const Measurement<Wire, Q>& m, const std::array<S, 0>&) const {
+    return {.value = S(m.point.x())};
+  }
+};
+Crate<Arm, SensorOn<"camera", OnHead, Wire>, HandEye> reading_as_a_point;
 
 // ---- crates in use: no further error where they are used
 
@@ -381,6 +433,27 @@ struct DoesNothing {
 };
 void add_does_nothing(Problem& problem) {
   problem.add_sensor(DoesNothing{}, {"a", "link"});
+}
+
+// expect: place() of this sensor does not return a Vector3<S>, Ray<S>, Pose<S> or Reading<S>
+struct PlacesProduct {
+  static constexpr std::string_view kType = "places_product";
+  static constexpr std::array kParameters = {ParameterInfo{"scale"}};
+  template <class S, class Q>
+  auto place(const Measurement<PlacesProduct, Q>& m, const std::array<S, 1>& v) const {
+    return Vector3<S>(m.point.x(), m.point.y(), m.point.z()) * (1.0 + v[0]);
+  }
+};
+Verdict check_places_product() {
+  return check_sensor(PlacesProduct{});
+}
+
+// expect: this sensor has no name; write in it static constexpr std::string_view kType
+struct Anonymous : DoesNothing {
+  static constexpr int kType = 0;
+};
+auto calibrate_anonymous() {
+  return calibrate(Crate<Arm, SensorOn<"camera", OnHead, Anonymous>, HandEye>(), {});
 }
 
 // expect: joint positions are not numbers that forward kinematics can use; use double or float, or

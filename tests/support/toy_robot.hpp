@@ -108,6 +108,6 @@ struct ToyFinder {
   }
 };
 
-static_assert(Arm<ToyArm> && Camera<ToyCamera> && Finder<ToyFinder>);
+static_assert(RobotArm<ToyArm> && RobotCamera<ToyCamera> && Finder<ToyFinder>);
 
 }  // namespace kinecal::test

@@ -53,9 +53,10 @@ struct DropsADerivative {
 TEST(CheckBlock, FindsADroppedDerivativeAndPrintsBothMatrices) {
   const Verdict v = check_block(DropsADerivative{});
   EXPECT_FALSE(v);
-  EXPECT_THAT(v.text, StartsWith("error block 'drops_a_derivative': derivatives disagree with its "
-                                 "values; one row per value, one column per variable\n"
-                                 "by jets:\n"));
+  EXPECT_THAT(v.text,
+              StartsWith("error block 'drops_a_derivative': where the sensors agree, derivatives "
+                         "disagree with its values; one row per value, one column per variable\n"
+                         "by jets:\n"));
   EXPECT_THAT(v.text, HasSubstr("\n              0             1             0             0"
                                 "             0             0\n"));
   EXPECT_THAT(v.text, HasSubstr("\ncentral differences of the values:\n"));
@@ -117,6 +118,37 @@ TEST(CheckBlock, FindsAResidualWhereTheSensorsAgree) {
       check_block(PointDistance{0.3}, Vector3<double>(1, 0, 0), Vector3<double>(0, 0, 0)).text,
       StartsWith("error block 'point_distance': the residual is not zero"));
   EXPECT_THAT(check_block(Kink{}).text, HasSubstr("derivatives disagree"));
+}
+
+/// An absolute value in place of a signed distance.
+struct HeightWithoutSign {
+  template <class S>
+  Eigen::Matrix<S, 1, 1> operator()(const Vector3<S>& p) const {
+    return Eigen::Matrix<S, 1, 1>(abs(p.z()));
+  }
+};
+/// The same beside a parameter.
+struct DistanceWithoutSign {
+  static constexpr std::array kParameters = {ParameterInfo{"length", "m", 0.5}};
+  template <class S>
+  Eigen::Matrix<S, 1, 1> operator()(const Vector3<S>& a, const Vector3<S>& b,
+                                    const std::array<S, 1>& own) const {
+    return Eigen::Matrix<S, 1, 1>(abs((a - b).norm() - own[0]));
+  }
+};
+
+TEST(CheckBlock, FindsAKinkWhereTheResidualIsZeroWithoutSuchArguments) {
+  EXPECT_THAT(check_block(HeightWithoutSign{}).text,
+              StartsWith("error block: where the residual is zero, derivatives disagree"));
+  EXPECT_THAT(check_block(DistanceWithoutSign{}).text,
+              StartsWith("error block: where the residual is zero, derivatives disagree"));
+  EXPECT_EQ(check_block(PointToPlane{0.1, 0.2, 2.0, -0.4}), kLawsHold);
+  EXPECT_EQ(check_block(PointToSphere{{0.1, 0.2, 0.3}, 0.4}), kLawsHold);
+  EXPECT_EQ(check_block(PointToLine({0.1, -0.2, 0.3}, {1.0, 2.0, -0.5})), kLawsHold);
+  EXPECT_EQ(check_block(PointDistance{0.3}), kLawsHold);
+  EXPECT_EQ(check_block(PointToRay{}), kLawsHold);
+  EXPECT_EQ(check_block(test::WireLength{}), kLawsHold);
+  EXPECT_EQ(check_block(test::ThermalBar{}), kLawsHold);
 }
 
 TEST(CheckBlock, FindsWhatHasNoValueOrAnotherEachTime) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kinecal/sensors.hpp"
+#include "support/division_lens.hpp"
 #include "support/fisheye.hpp"
 #include "support/open_scene.hpp"
 
@@ -20,6 +21,12 @@ TEST(CheckSensor, HoldsForTheBuiltInSensorsAndThatOfAUser) {
   EXPECT_EQ(check_sensor(DepthCamera{}), kLawsHold);
   EXPECT_EQ(check_sensor(PinholeCamera{}), kLawsHold);
   EXPECT_EQ(check_sensor(test::DrawWire{}), kLawsHold);
+}
+
+TEST(CheckSensor, HoldsForCamerasWithAnyLensThatOfAUserToo) {
+  EXPECT_EQ(check_sensor(LensCamera<Equidistant>{}), kLawsHold);
+  EXPECT_EQ(check_sensor(LensCamera<DoubleSphere>{}), kLawsHold);
+  EXPECT_EQ(check_sensor(LensCamera<test::Division>{}), kLawsHold);
 }
 
 TEST(CheckSensor, TakesRecordedObservations) {

@@ -16,28 +16,28 @@ namespace kinecal {
 
 /// Any arm.
 struct AnyArm {
-  std::function<void(const JointTarget&)> mover;      ///< see Arm
-  std::function<MeasuredJoints(Stamp after)> reader;  ///< see Arm
+  std::function<void(const JointTarget&)> mover;      ///< see RobotArm
+  std::function<MeasuredJoints(Stamp after)> reader;  ///< see RobotArm
 
-  void move(const JointTarget& target) { mover(target); }            ///< see Arm
-  MeasuredJoints next_joints(Stamp after) { return reader(after); }  ///< see Arm
+  void move(const JointTarget& target) { mover(target); }            ///< see RobotArm
+  MeasuredJoints next_joints(Stamp after) { return reader(after); }  ///< see RobotArm
 };
 
 /// Any camera.
 struct AnyCamera {
-  std::function<View(Stamp after)> viewer;  ///< see Camera
+  std::function<View(Stamp after)> viewer;  ///< see RobotCamera
 
-  View next_view(Stamp after) { return viewer(after); }  ///< see Camera
+  View next_view(Stamp after) { return viewer(after); }  ///< see RobotCamera
 };
 
 /// Any lamp.
 struct AnyLamp {
-  std::function<Stamp(int code)> lighter;  ///< see Lamp
+  std::function<Stamp(int code)> lighter;  ///< see RobotLamp
 
-  Stamp light(int code) { return lighter(code); }  ///< see Lamp
+  Stamp light(int code) { return lighter(code); }  ///< see RobotLamp
 };
 
-static_assert(Arm<AnyArm> && Camera<AnyCamera> && Lamp<AnyLamp>);
+static_assert(RobotArm<AnyArm> && RobotCamera<AnyCamera> && RobotLamp<AnyLamp>);
 
 /// A robot to capture, and the object that owns its parts.
 struct AnyRobot {
@@ -49,7 +49,7 @@ struct AnyRobot {
 
 /// An arm of any type.
 /// @param arm  must outlive the result
-template <Arm A>
+template <RobotArm A>
 [[nodiscard]] AnyArm any_arm(A& arm) {
   return {[&arm](const JointTarget& target) { arm.move(target); },
           [&arm](Stamp after) { return arm.next_joints(after); }};
@@ -57,14 +57,14 @@ template <Arm A>
 
 /// A camera of any type.
 /// @param camera  must outlive the result
-template <Camera C>
+template <RobotCamera C>
 [[nodiscard]] AnyCamera any_camera(C& camera) {
   return {[&camera](Stamp after) { return camera.next_view(after); }};
 }
 
 /// A lamp of any type.
 /// @param lamp  must outlive the result
-template <Lamp L>
+template <RobotLamp L>
 [[nodiscard]] AnyLamp any_lamp(L& lamp) {
   return {[&lamp](int code) { return lamp.light(code); }};
 }

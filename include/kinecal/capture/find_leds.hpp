@@ -24,7 +24,7 @@ namespace kinecal {
 /// @param joints  positions since then, for views without joints
 /// @return        the LEDs found; its refusal names each missing LED, with the reason
 /// @throws        PoseError, ConnectionError: like the camera and the lamp
-template <Camera C, Lamp L>
+template <RobotCamera C, RobotLamp L>
 [[nodiscard]] Found find_leds(const LedFinder& finder, C& camera, L& lamp, Stamp after,
                               const MeasuredJoints& joints = {}) {
   constexpr Stamp kLongest = std::chrono::seconds(1);

@@ -55,24 +55,24 @@ struct JointTarget {
 ///                           none come within the adapter's time limit
 /// Both throw ConnectionError if the robot cannot be reached.
 template <class A>
-concept Arm = requires(A& arm, const JointTarget& target, Stamp after) {
+concept RobotArm = requires(A& arm, const JointTarget& target, Stamp after) {
   { arm.move(target) } -> std::same_as<void>;
   { arm.next_joints(after) } -> std::same_as<MeasuredJoints>;
 };
 
 /// A camera.
-///   camera.next_view(after)  waits for a view stamped after this time; throws like an Arm.  Its joints
+///   camera.next_view(after)  waits for a view stamped after this time; throws like a RobotArm.  Its joints
 ///                            may be empty: the session fills them in.
 template <class C>
-concept Camera = requires(C& camera, Stamp after) {
+concept RobotCamera = requires(C& camera, Stamp after) {
   { camera.next_view(after) } -> std::same_as<View>;
 };
 
 /// LEDs that can be switched.
 ///   lamp.light(code)  lights only the LEDs of this code, 0: none; returns the time of the switch;
-///                     throws like an Arm
+///                     throws like a RobotArm
 template <class L>
-concept Lamp = requires(L& lamp, int code) {
+concept RobotLamp = requires(L& lamp, int code) {
   { lamp.light(code) } -> std::same_as<Stamp>;
 };
 

@@ -37,7 +37,7 @@ using PoseObserver = std::function<void(const CapturedPose&)>;
 /// @throws ConnectionError        if the connection is lost, or a stream is silent in two poses;
 ///                                finished poses are kept
 /// @throws HopelessError          if what a first look finds, or the first poses, fail alike
-template <Arm A>
+template <RobotArm A>
 void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> finders,
                  const PoseObserver& took, const SessionOptions& options = {});
 
@@ -53,7 +53,7 @@ void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> fi
 
 /// A finder of one view, for a session.
 /// @param camera  must outlive the result
-template <Finder F, Camera C>
+template <Finder F, RobotCamera C>
 [[nodiscard]] SessionFinder session_finder(std::string name, F finder, C& camera) {
   return {std::move(name), [&camera](Stamp after) { return camera.next_view(after); },
           [finder = std::move(finder)](const View& view) { return finder.find(view); }};
@@ -75,7 +75,7 @@ namespace detail {
                                           double limit);
 
 /// Runs the finders of a pose where the robot stands, and returns their results.
-template <Arm A>
+template <RobotArm A>
 void look(A& arm, const MeasuredJoints& joints, std::span<const SessionFinder* const> finders,
           const SessionOptions& options, CapturedPose& captured) {
   for (const SessionFinder* finder : finders) {
@@ -97,7 +97,7 @@ void look(A& arm, const MeasuredJoints& joints, std::span<const SessionFinder* c
 
 }  // namespace detail
 
-template <Arm A>
+template <RobotArm A>
 void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> finders,
                  const PoseObserver& took, const SessionOptions& options) {
   Stamp now = Stamp::min();

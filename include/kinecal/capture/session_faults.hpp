@@ -47,12 +47,12 @@ class AlikeFaults {
 [[nodiscard]] std::string not_measured(const CapturePose& pose, const MeasuredJoints& joints);
 
 /// Why no view of a finder can be used; empty if one could.
-/// @throws PoseError  like Camera
+/// @throws PoseError  like a RobotCamera
 [[nodiscard]] std::string useless_views(const SessionFinder& finder, Stamp joints,
                                         const SettleOptions& options);
 
 /// What would fail in every pose, found without a motion; empty if nothing would.
-template <Arm A>
+template <RobotArm A>
 [[nodiscard]] std::string first_look(A& arm, const CapturePose& pose,
                                      std::span<const SessionFinder* const> finders,
                                      const SettleOptions& options) {

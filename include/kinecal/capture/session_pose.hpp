@@ -14,7 +14,7 @@ namespace kinecal {
 /// A finder of a session, with its camera.
 struct SessionFinder {
   std::string name;                              ///< as poses name it
-  std::function<View(Stamp after)> next_view;    ///< of its camera: see Camera
+  std::function<View(Stamp after)> next_view;    ///< of its camera: see RobotCamera
   std::function<Found(const View& still)> find;  ///< receives a view in which nothing moves
   /// Why a view cannot be used, whatever it shows: no camera_info; empty: not asked.
   std::function<std::string(const View& view)> fault = {};

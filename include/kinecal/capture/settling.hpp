@@ -61,7 +61,7 @@ class JointRest {
 /// @returns  mean positions while still
 /// @throws PoseError        naming the joint that does not arrive or does not stop
 /// @throws ConnectionError  from the arm
-template <Arm A>
+template <RobotArm A>
 [[nodiscard]] MeasuredJoints settle_joints(A& arm, const JointTarget& target, Stamp after,
                                            const SettleOptions& options = {});
 
@@ -69,7 +69,7 @@ template <Arm A>
 [[nodiscard]] double changed_pixels(const GrayImage& a, const GrayImage& b, int gray_levels);
 
 /// Waits for a view with a still image.  Returns a view without image at once.
-/// @param next_view  the first view stamped after a time: see Camera
+/// @param next_view  the first view stamped after a time: see RobotCamera
 /// @throws PoseError        if the image does not come to rest, its size changes, or its clock
 ///                          differs from that of the joints
 /// @throws ConnectionError  from the camera
@@ -86,7 +86,7 @@ namespace detail {
 
 }  // namespace detail
 
-template <Arm A>
+template <RobotArm A>
 MeasuredJoints settle_joints(A& arm, const JointTarget& target, Stamp after,
                              const SettleOptions& options) {
   JointRest rest(options);

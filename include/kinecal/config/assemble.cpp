@@ -129,7 +129,7 @@ bool check_terms(const StepConfig& step, const AnyProblem& problem, std::span<co
     if (index < 0) continue;
     table[index].lower = bound.lower;
     table[index].upper = bound.upper;
-    double value = table[index].initial;
+    double value = table[index].value;
     for (const auto& [assigned, initial] : initial_assignments(step, table)) {
       if (assigned == index) value = initial;
     }
@@ -239,7 +239,7 @@ Calibration assemble(const Config& given, const Robot& of_urdf, std::span<const 
   if (!config.steps.empty()) {  // values of later steps are set when those steps start
     for (const auto& [index, value] :
          detail::initial_assignments(config.steps.front(), calibration.table)) {
-      calibration.table[index].initial = calibration.table[index].value = value;
+      calibration.table[index].value = value;
     }
   }
   detail::warn_of_unusable(config, samples, diagnostics);

@@ -22,15 +22,22 @@ struct RecordedLenses {
   bool is_known = true;  ///< false if some lens is not known: choose_images() reports it
 };
 
+/// The lens that a camera_info describes: one of those that a type has, or lens_of().
+[[nodiscard]] std::string recorded_lens(const CameraInfo& info, const SensorEntry& entry) {
+  const auto own = std::find(entry.lenses.begin(), entry.lenses.end(), info.distortion_model);
+  const bool is_own = own != entry.lenses.end() && lens_named(*own).empty();
+  return is_own ? *own : lens_of(info);
+}
+
 [[nodiscard]] RecordedLenses recorded_lenses(const std::vector<Sample>& samples,
-                                             const std::string& camera) {
+                                             const std::string& camera, const SensorEntry& entry) {
   RecordedLenses recorded;
   std::set<std::string> names;
   for (const Sample& sample : samples) {
     const Observation* seen = sample.observation(camera);
     if (seen == nullptr || !seen->camera) continue;
     try {
-      const std::string lens = lens_of(*seen->camera);
+      const std::string lens = recorded_lens(*seen->camera, entry);
       if (names.insert(lens).second) recorded.lenses.emplace_back(lens, &sample);
     } catch (const SettingsError&) {
       recorded.is_known = false;
@@ -46,9 +53,9 @@ struct RecordedLenses {
 }
 
 /// Replaces the lens of the samples by one without distortion.
-void replace_lens(std::vector<Sample>& samples, const std::string& camera,
+void replace_lens(std::vector<Sample>& samples, const std::string& camera, const SensorEntry& entry,
                   const std::string& lens) {
-  const auto sensor = any_built_in(lens_camera(lens));
+  const auto sensor = entry.make({ImageKind::raw, lens});
   const std::size_t coefficients = sensor->parameters().size() - kIntrinsics;
   for (Sample& sample : samples) {
     for (Observation& seen : sample.observations) {
@@ -63,7 +70,7 @@ void set_lens(Config& config, const std::string& camera, const std::string& lens
   for (StepConfig& step : config.steps) {
     for (ModelConfig& model : step.models) {
       const SensorEntry* entry = entry_of(model);
-      if (model.name == camera && entry != nullptr && entry->has_lens) model.lens = lens;
+      if (model.name == camera && entry != nullptr && !entry->lenses.empty()) model.lens = lens;
     }
   }
 }
@@ -93,8 +100,8 @@ void take_recorded_lens(Config& config, const ModelConfig& camera, const Recorde
 void choose_lenses(Config& config, std::vector<Sample>& samples, Diagnostics& diagnostics) {
   for (const ModelConfig& camera : detail::models_of(config)) {
     const SensorEntry* entry = entry_of(camera);
-    if (entry == nullptr || !entry->has_lens || camera.image == ImageKind::rectified) continue;
-    const detail::RecordedLenses recorded = detail::recorded_lenses(samples, camera.name);
+    if (entry == nullptr || entry->lenses.empty() || camera.image == ImageKind::rectified) continue;
+    const detail::RecordedLenses recorded = detail::recorded_lenses(samples, camera.name, *entry);
     if (camera.lens.empty()) {
       detail::take_recorded_lens(config, camera, recorded, diagnostics);
       continue;
@@ -111,7 +118,7 @@ void choose_lenses(Config& config, std::vector<Sample>& samples, Diagnostics& di
     }
     diagnostics.note(camera.place,
                      what + ", which is not used: the search begins without distortion");
-    detail::replace_lens(samples, camera.name, camera.lens);
+    detail::replace_lens(samples, camera.name, *entry, camera.lens);
   }
 }
 

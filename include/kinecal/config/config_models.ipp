@@ -37,19 +37,21 @@ namespace kinecal::detail {
   return ImageKind::automatic;
 }
 
-/// `lens: equidistant`, or another of lens_names(), or auto.
+/// `lens: equidistant`, or another name of a lens that the type has, or auto.
 [[nodiscard]] inline std::string read_lens(ConfigMap& map, const ModelConfig& model) {
   const auto lens = map.text("lens");
   if (!lens) return {};
   const SourceLocation place = map.find("lens")->place;
   const SensorEntry* entry = entry_of(model);
-  if (entry != nullptr && !entry->has_lens) {
+  if (entry != nullptr && entry->lenses.empty()) {
     map.error(place, "lens is a key of camera2d, but the type is '" + model.type + "'");
   }
-  const std::string known(*lens == kAnyLens ? kAnyLens : lens_named(*lens));
+  std::vector<std::string> names(lens_names().begin(), lens_names().end());
+  if (entry != nullptr && !entry->lenses.empty()) names = entry->lenses;
+  names.emplace_back(kAnyLens);
+  const bool is_one = std::find(names.begin(), names.end(), *lens) != names.end();
+  const std::string known(is_one ? *lens : lens_named(*lens));
   if (known.empty()) {
-    std::vector<std::string> names(lens_names().begin(), lens_names().end());
-    names.emplace_back(kAnyLens);
     map.error(place, fmt::format("lens '{}' is none of {}{}", *lens, fmt::join(names, ", "),
                                  did_you_mean(*lens, names)));
   }

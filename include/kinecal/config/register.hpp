@@ -23,14 +23,17 @@ namespace detail {
 
 }  // namespace detail
 
-/// Adds a type of sensor: configurations name it M::kType.
+/// Adds a type of sensor: configurations name it M::kType, and the lens of a LensCamera in `lens:`.
 /// @throws std::invalid_argument  if the name is taken
-template <Sensor M>
+template <class M>
 void register_sensor(const M& model) {
-  registry().add(
-      detail::sensor_entry_of(model, [](AnyProblem& problem, const M& sensor, const Mount& mount) {
-        detail::problem_of_program(problem).add_sensor(sensor, mount);
-      }));
+  [[maybe_unused]] const detail::CheckSensorType<M> check_of_type{};
+  if constexpr (Sensor<M>) {
+    registry().add(detail::sensor_entry_of(
+        model, [](AnyProblem& problem, const M& sensor, const Mount& mount) {
+          detail::problem_of_program(problem).add_sensor(sensor, mount);
+        }));
+  }
 }
 
 /// Adds a type of error block: configurations name it B::kType.

@@ -26,12 +26,31 @@ template <Sensor M>
   const auto with = [](const SensorOptions& options) {
     return lens_camera(options.lens.empty() ? PlumbBob::kName : options.lens, options.image);
   };
-  entry.has_lens = true;
+  entry.lenses.assign(lens_names().begin(), lens_names().end());
   entry.make = [with](const SensorOptions& options) { return any_built_in(with(options)); };
   entry.add = [with](AnyProblem& problem, const Mount& mount, const SensorOptions& options) {
     problem.add_built_in(with(options), mount);
   };
   return entry;
+}
+
+/// Adds a camera with another lens to the type of such cameras.
+/// @throws std::invalid_argument  if the name of the lens is taken
+void add_lens(SensorEntry own, SensorEntry& cameras) {
+  const std::string lens = own.lenses.front();
+  const auto& known = cameras.lenses;
+  if (std::find(known.begin(), known.end(), lens) != known.end() || !lens_named(lens).empty()) {
+    throw std::invalid_argument("lens '" + lens + "' of sensor type '" + own.type +
+                                "' is registered already");
+  }
+  cameras.lenses.push_back(lens);
+  cameras.make = [lens, own = own.make, others = cameras.make](const SensorOptions& options) {
+    return options.lens == lens ? own(options) : others(options);
+  };
+  cameras.add = [lens, own = own.add, others = cameras.add](AnyProblem& problem, const Mount& mount,
+                                                            const SensorOptions& options) {
+    (options.lens == lens ? own : others)(problem, mount, options);
+  };
 }
 
 /// @param make  makes the block from the numbers of a configuration
@@ -141,7 +160,12 @@ Registry::Registry() {
 }
 
 void Registry::add(SensorEntry entry) {
-  if (sensor(entry.type) != nullptr) {
+  const auto known = std::find_if(sensors_.begin(), sensors_.end(),
+                                  [&](const SensorEntry& one) { return one.type == entry.type; });
+  if (known != sensors_.end() && !entry.lenses.empty() && !known->lenses.empty()) {
+    return detail::add_lens(std::move(entry), *known);
+  }
+  if (known != sensors_.end()) {
     throw std::invalid_argument("sensor type '" + entry.type + "' is registered already");
   }
   sensors_.push_back(std::move(entry));

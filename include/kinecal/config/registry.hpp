@@ -4,6 +4,7 @@
 // configuration (register.hpp); they then work like the others:
 //
 //   kinecal::register_sensor(DrawWire{});
+//   kinecal::register_sensor(LensCamera<Division>{});  // `type: camera2d`, `lens: division`
 //   kinecal::register_block<WireLength>({{"wire"}, {"model"}});
 //
 // Do not change the registry while other threads read configurations.
@@ -33,7 +34,7 @@ struct SensorEntry {
   std::string type;                         ///< `type:` of a model
   std::shared_ptr<const AnySensor> sensor;  ///< what is known of it
   bool has_image = false;                   ///< `image:` says what its pixels are of
-  bool has_lens = false;                    ///< `lens:` says which lens it has
+  std::vector<std::string> lenses = {};  ///< names that `lens:` may have; empty: it has no such key
   /// A sensor of this type.
   std::function<std::shared_ptr<const AnySensor>(const SensorOptions&)> make;
   /// Adds a sensor of this type to a problem.
@@ -48,6 +49,13 @@ inline constexpr bool kHasImage = requires(M model) {
   { model.image } -> std::same_as<ImageKind&>;
 };
 
+/// The name of a sensor's lens, if it is a camera with one.
+template <class M>
+[[nodiscard]] std::vector<std::string> lenses_of() {
+  if constexpr (requires { M::kLens; }) return {std::string(M::kLens)};
+  return {};
+}
+
 /// @param add  takes a problem, a sensor and its mount
 template <Sensor M, class Add>
 [[nodiscard]] SensorEntry sensor_entry_of(const M& model, Add add) {
@@ -59,7 +67,7 @@ template <Sensor M, class Add>
   return {std::string(M::kType),
           behind_interface(model),
           kHasImage<M>,
-          false,
+          lenses_of<M>(),
           [with](const SensorOptions& options) { return behind_interface(with(options.image)); },
           [with, add](AnyProblem& problem, const Mount& mount, const SensorOptions& options) {
             add(problem, with(options.image), mount);
@@ -98,7 +106,7 @@ class Registry {
   /// The built-in types.
   Registry();
 
-  /// Adds a type.
+  /// Adds a type; a camera with a lens of a new name, to the type that it has.
   /// @throws std::invalid_argument  if the name is taken
   /// @{
   void add(SensorEntry entry);

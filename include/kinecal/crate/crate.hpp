@@ -190,10 +190,10 @@ class Crate {
   template <FixedString Name, class... Ts>
   [[nodiscard]] static auto& part_of(std::tuple<Ts...>& parts) {
     using List = detail::TypeList<Ts...>;
-    using Found = LookedUp<kView<Name>, List>;
-    [[maybe_unused]] constexpr detail::Unless<Found::kExists, detail::PartOfName<Name, Found>>
+    using Match = LookedUp<kView<Name>, List>;
+    [[maybe_unused]] constexpr detail::Unless<Match::kExists, detail::PartOfName<Name, Match>>
         kPartCheck = {};
-    if constexpr (Found::kExists) {
+    if constexpr (Match::kExists) {
       constexpr auto kPlace = std::find(List::kNames.begin(), List::kNames.end(), Name);
       return std::get<kPlace - List::kNames.begin()>(parts);
     } else if constexpr (sizeof...(Ts) > 0) {

@@ -4,6 +4,7 @@
 
 #include "kinecal/crate/parameter_use.hpp"
 #include "kinecal/errors/block_checks.hpp"
+#include "kinecal/sensors/sensor_checks.hpp"
 
 namespace kinecal::detail {
 
@@ -33,13 +34,19 @@ inline constexpr std::array<Quantity, 0> kTaken = {};
 template <ErrorBlock B>
 inline constexpr auto kTaken<B> = kQuantities<B>;
 
+/// True if a sensor delivers a quantity; false of what is not a sensor, which has its own sentence.
+template <class M>
+[[nodiscard]] constexpr bool can_deliver(Quantity quantity) {
+  if constexpr (Sensor<M>) return delivers<M>(quantity);
+  return false;
+}
 /// True if each sensor of a block delivers the quantity the block takes.
 template <class Block, class... Sensors>
 [[nodiscard]] constexpr bool kinds_fit(TypeList<Sensors...>) {
   const auto& names = Block::kSensorNames;
   const auto& taken = kTaken<typename Block::Error>;
   const auto delivers_it = [](std::string_view name, Quantity quantity) {
-    return ((Sensors::kName == name && delivers<typename Sensors::Model>(quantity)) || ...);
+    return ((Sensors::kName == name && can_deliver<typename Sensors::Model>(quantity)) || ...);
   };
   return std::equal(names.begin(), names.end(), taken.begin(), taken.end(), delivers_it);
 }
@@ -132,7 +139,7 @@ struct CheckCrate<TypeList<Ss...>, TypeList<Ps...>, TypeList<Bs...>, TypeList<Qs
   static constexpr bool kIsUsed = (moves_block<P, Bs>(Sensors()) || ...);
 
   using type = FirstOf<  //
-      Unless<(sizeof...(Ss) > 0), SensorsOfCrate<Blocks>>,
+      Unless<(sizeof...(Ss) > 0), SensorsOfCrate<Blocks>>, CheckSensorType<typename Ss::Model>...,
       Unless<(sizeof...(Bs) > 0), BlocksOfCrate<Sensors>>,
       Unless<Sensors::names_differ(), NamesOfSensors<Sensors>>,
       Unless<Blocks::names_differ(), NamesOfBlocks<Blocks>>,

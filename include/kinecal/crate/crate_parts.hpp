@@ -19,7 +19,7 @@ namespace kinecal {
 
 /// A sensor of any type at the tip of a chain.
 /// @tparam M  the sensor: one of sensors/, or your own struct
-template <FixedString Name, StaticChain C, Sensor M>
+template <FixedString Name, StaticChain C, class M>
 struct SensorOn {
   using Chain = C;                                 ///< from the base to the sensor
   using Model = M;                                 ///< the sensor

@@ -27,6 +27,14 @@ struct ArgumentsOfBlock {
                 "<class S> Eigen::Matrix<S, N, 1> operator()(const Vector3<S>& p) const, or "
                 "declare its Inputs");
 };
+template <class Residual, bool kAreDelivered = false>
+struct LastArgumentsOfBlock {
+  static_assert(
+      kAreDelivered,
+      "kinecal: no sensors deliver the arguments of this error block, or its last ones do "
+      "not fit: const std::array<S, N>& for its N kParameters, then const std::array<Q, "
+      "N>& for its N kConditions");
+};
 
 /// The result has this scalar.
 template <class R, class S>
@@ -44,7 +52,9 @@ concept TakesDoubles = requires(const B& block, const Vector3<Probe>& p) {
 template <class B>
 using WhyNoBlock = std::conditional_t<
     TakesDoubles<B>, ResidualOfBlock<B>,
-    std::conditional_t<!ReturnsVectorOfFixedSize<B>, VectorOfBlock<B>, ArgumentsOfBlock<B>>>;
+    std::conditional_t<
+        !ReturnsVectorOfFixedSize<B>, VectorOfBlock<B>,
+        std::conditional_t<kTakesFeaturesOnly<B>, ArgumentsOfBlock<B>, LastArgumentsOfBlock<B>>>>;
 
 /// Holds, or the sentence.
 template <class B>

@@ -211,7 +211,7 @@ struct FreeParameters {
   static constexpr std::array<ParameterId, kSize> kIds = [] {
     std::array<ParameterId, kSize> ids{};
     std::size_t n = 0;
-    const auto append = [&](const auto& of_parameter) {
+    [[maybe_unused]] const auto append = [&](const auto& of_parameter) {
       for (const ParameterId& id : of_parameter) ids[n++] = id;
     };
     (append(Ps::kIds), ...);

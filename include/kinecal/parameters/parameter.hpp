@@ -54,10 +54,10 @@ inline constexpr auto kFrameAxes = [] {
 
 /// A parameter of a calibration with its value and bounds.
 struct Parameter {
-  std::string name;                                         ///< unique in a table
-  std::string unit = "rad";                                 ///< "rad", "m" or "1"
-  double initial = 0.0;                                     ///< value before the first step
-  double value = initial;                                   ///< current value
+  std::string name;          ///< unique in a table
+  std::string unit = "rad";  ///< "rad", "m" or "1"
+  double initial = 0.0;      ///< in a result: the value before the first step
+  double value = initial;    ///< current value: set it for another start
   double lower = -std::numeric_limits<double>::infinity();  ///< lower bound of the value
   double upper = std::numeric_limits<double>::infinity();   ///< upper bound of the value
 };

@@ -3,7 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <map>
+#include <span>
 
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/problem/input_checks.ipp"
@@ -32,6 +36,42 @@ using ComparedFeatures = std::map<int, std::vector<std::size_t>>;
     row.add_term(t, precisions_of(term(t), observed), conditions_of(term(t), sample));
   }
   return row;
+}
+
+/// What of a sample no term uses.
+[[nodiscard]] inline UnusedInput unused_of(const std::vector<MountedSensor>& sensors,
+                                           const Sample& sample, const Observed& observed) {
+  UnusedInput unused;
+  const auto is_name = [](const std::string& name) {
+    return [&](const MountedSensor& sensor) { return sensor.mount().name == name; };
+  };
+  for (const Observation& seen : sample.observations) {
+    if (std::none_of(sensors.begin(), sensors.end(), is_name(seen.sensor))) {
+      unused.others.push_back(seen.sensor);
+    }
+  }
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    const std::string& name = sensors[s].mount().name;
+    if (!observed[s]) {
+      unused.absent.push_back(name);
+    } else if (std::count(observed[s]->usable.begin(), observed[s]->usable.end(), 0.0) > 0) {
+      unused.not_numbers.push_back(name);
+    }
+  }
+  return unused;
+}
+
+/// A hash of numbers, rounded to 1e-6.  Source: Fowler, Noll, Vo, FNV-1a.
+[[nodiscard]] inline std::uint64_t fingerprint_of(std::size_t layout,
+                                                  std::span<const double> numbers) {
+  constexpr std::uint64_t kOffset = 0xcbf29ce484222325, kPrime = 0x100000001b3;
+  std::uint64_t hash = (kOffset ^ layout) * kPrime;
+  for (const double number : numbers) {
+    const double rounded = std::round(1e6 * number) + 0.0;  // no -0
+    hash = (hash ^ std::bit_cast<std::uint64_t>(rounded)) * kPrime;
+    hash ^= hash >> 32;
+  }
+  return hash;
 }
 
 }  // namespace detail
@@ -71,7 +111,7 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   } catch (const SampleError& e) {
     throw SampleError(source + ": " + e.what());
   }
-  AddedSample added{source};
+  AddedSample added{.source = source, .unused = detail::unused_of(sensors_, sample, observed)};
   for (const auto& [t, features] : compared) {
     added.residuals += static_cast<int>(features.size()) * term(t).feature_size;
     const std::string& first = sensor(term(t).sensors.front()).mount().name;
@@ -83,6 +123,7 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   auto& [layout, of_layout] =
       *layouts_.try_emplace(std::move(row.layout), OfLayout{layouts_.size()}).first;
   add_to_batch(of_layout.index, layout, row.numbers);
+  added.fingerprint = detail::fingerprint_of(of_layout.index, row.numbers);
   ++of_layout.samples;
   residuals_ += added.residuals;
   samples_.push_back(std::move(added));

@@ -7,6 +7,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <set>
@@ -24,6 +25,13 @@
 namespace kinecal {
 
 class AnyEvaluator;
+
+/// What of a sample no error block uses, though it may have been meant.
+struct UnusedInput {
+  std::vector<std::string> others = {};       ///< sensors that are observed, and not of the problem
+  std::vector<std::string> absent = {};       ///< sensors of the problem that are not observed
+  std::vector<std::string> not_numbers = {};  ///< sensors with a feature that is not a number
+};
 
 /// A calibration problem.  Add sensors, then error blocks and priors, then samples.
 class AnyProblem {
@@ -114,6 +122,18 @@ class AnyProblem {
   }
   /// The feature of a residual: the i-th that a term compares in a sample.
   [[nodiscard]] FeatureLabel feature(int term, int sample, std::ptrdiff_t i) const;
+  /// True if an error block compares something of a sample.
+  [[nodiscard]] bool is_used(int sample) const {
+    return samples_[static_cast<std::size_t>(sample)].residuals > 0;
+  }
+  /// What of a sample is left out.
+  [[nodiscard]] const UnusedInput& unused(int sample) const {
+    return samples_[static_cast<std::size_t>(sample)].unused;
+  }
+  /// Equal for samples whose numbers are equal, to 1e-6 of their units, for all error blocks.
+  [[nodiscard]] std::uint64_t fingerprint(int sample) const {
+    return samples_[static_cast<std::size_t>(sample)].fingerprint;
+  }
   /// Number of residuals: those of all features, and those of each prior once.
   [[nodiscard]] int num_residuals() const {
     return residuals_ + static_cast<int>(priors_.size()) * Prior::kRows;
@@ -200,6 +220,8 @@ class AnyProblem {
   struct AddedSample {
     std::string source;  ///< "samples.yaml:37"
     int residuals = 0;   ///< of all features
+    std::uint64_t fingerprint = 0;
+    UnusedInput unused = {};
     /// Of a term: the features that it compares, unless they are 0, 1, 2 ... without ids.
     std::map<int, std::vector<FeatureLabel>> labels = {};
   };

@@ -63,6 +63,6 @@ class PipeRobot {
   class Pipe;
   std::unique_ptr<Pipe> pipe_;
 };
-static_assert(Arm<PipeRobot> && Camera<PipeRobot> && Lamp<PipeRobot>);
+static_assert(RobotArm<PipeRobot> && RobotCamera<PipeRobot> && RobotLamp<PipeRobot>);
 
 }  // namespace kinecal

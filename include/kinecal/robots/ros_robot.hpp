@@ -84,7 +84,7 @@ class RosArm {
   RosArmOptions options_;
   std::vector<detail::RosAction> actions_;  ///< of the controllers
 };
-static_assert(Arm<RosArm>);
+static_assert(RobotArm<RosArm>);
 
 /// Topics of a camera; empty: none.
 struct RosCameraOptions {
@@ -113,7 +113,7 @@ class RosCamera {
  private:
   std::unique_ptr<detail::ViewStreams> streams_;
 };
-static_assert(Camera<RosCamera>);
+static_assert(RobotCamera<RosCamera>);
 
 /// LEDs switched by an action: robot_calibration_msgs/GripperLedCommand.
 class RosLamp {
@@ -134,6 +134,6 @@ class RosLamp {
   detail::RosRobot* robot_;
   std::unique_ptr<detail::RosAction> action_;
 };
-static_assert(Lamp<RosLamp>);
+static_assert(RobotLamp<RosLamp>);
 
 }  // namespace kinecal

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/samples/sample.hpp"
@@ -19,7 +20,8 @@ enum class ImageKind {
 };
 
 /// Whether an image is raw.  The kind decides; if it is automatic, the camera_info.
-[[nodiscard]] bool is_raw(const CameraInfo& info, ImageKind image);
+/// @param own_lens  the name of a lens that is not in lens_names(): a camera_info of it is of a raw image
+[[nodiscard]] bool is_raw(const CameraInfo& info, ImageKind image, std::string_view own_lens = {});
 
 /// Focal lengths and principal point of an image: fx fy cx cy of K for a raw one, of P for a rectified one.
 [[nodiscard]] std::array<double, 4> intrinsics_of(const CameraInfo& info, bool raw);

@@ -11,12 +11,13 @@
 
 namespace kinecal {
 
-KINECAL_INLINE bool is_raw(const CameraInfo& info, ImageKind image) {
+KINECAL_INLINE bool is_raw(const CameraInfo& info, ImageKind image, std::string_view own_lens) {
   if (image != ImageKind::automatic) return image == ImageKind::raw;
   const bool has_k = info.k[0] != 0.0 || info.k[4] != 0.0;
   const bool has_p = info.p[0] != 0.0 || info.p[5] != 0.0;
   const std::string_view lens = lens_named(info.distortion_model);
-  const bool bends = (!lens.empty() && !bends_pinhole(lens)) ||
+  const bool is_own = lens.empty() && !own_lens.empty() && info.distortion_model == own_lens;
+  const bool bends = is_own || (!lens.empty() && !bends_pinhole(lens)) ||
                      std::any_of(info.d.begin(), info.d.end(), [](double d) { return d != 0.0; });
   return has_k && (bends || !has_p);
 }

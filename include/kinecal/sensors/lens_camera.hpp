@@ -59,12 +59,12 @@ struct LensCamera {
   /// @throws SettingsError  if they are missing or impossible, or if the distortion of a raw image is of another lens
   [[nodiscard]] Settings settings(const Observation& seen) const {
     const CameraInfo& info = camera_info_of(seen);
-    const bool raw = is_raw(info, image);
+    const bool raw = is_raw(info, image, kLens);
     const std::array<double, 4> intrinsics = intrinsics_of(info, raw);
     Settings s{};
     std::copy_n(intrinsics.begin(), 4, s.begin());
     if (raw) {
-      const std::vector<double> d = coefficients_of(info, kLens);
+      const std::vector<double> d = coefficients_of(info, kLens, kCoefficients);
       std::copy_n(d.begin(), kCoefficients, s.begin() + 4);
     }
     if (image != ImageKind::automatic && s[0] == 0.0 && s[1] == 0.0) {
@@ -86,7 +86,8 @@ struct LensCamera {
   /// @param v  (4 + N) parameters
   /// @throws std::invalid_argument  if coefficients of a rectified image have changed, which has none
   [[nodiscard]] CameraInfo calibrated(const CameraInfo& info, const Settings& v) const {
-    const bool raw = is_raw(info, image) || intrinsics_of(info, true) == intrinsics_of(info, false);
+    const bool raw =
+        is_raw(info, image, kLens) || intrinsics_of(info, true) == intrinsics_of(info, false);
     CameraInfo now = calibrated_camera_info(info, v[0], v[1], v[2], v[3],
                                             raw ? ImageKind::raw : ImageKind::rectified);
     set_coefficients(now, kLens, L::kCoefficients, std::span(v).subspan(4), raw);

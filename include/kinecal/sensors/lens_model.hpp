@@ -4,7 +4,7 @@
 // it, whose parameters are its coefficients:
 //
 //   struct Equidistant {
-//     static constexpr std::string_view kName = "equidistant";  // distortion_model of camera_info
+//     static constexpr std::string_view kName = "equidistant";  // distortion_model of camera_info, `lens:` of a model
 //     static constexpr std::array kCoefficients = {ParameterInfo{"k1"}, ...};  // in the order of D
 //     image(p, d)      (2) place of the image of a point, in focal lengths from the principal point; not a
 //                      number where the lens does not see the point

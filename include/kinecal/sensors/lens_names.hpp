@@ -37,9 +37,12 @@ namespace kinecal {
 
 /// The coefficients of a camera_info for a lens that can take them: its own, or those of a lens that it
 /// contains (rational_polynomial contains plumb_bob).
+/// @param lens   one of lens_names(), or your own, which camera_info names as its distortion_model
+/// @param count  how many coefficients it has
 /// @throws SettingsError  if there are too many or too few, one is not a number, or they are of another lens and not
 ///                        all zero
-[[nodiscard]] std::vector<double> coefficients_of(const CameraInfo& info, std::string_view lens);
+[[nodiscard]] std::vector<double> coefficients_of(const CameraInfo& info, std::string_view lens,
+                                                  std::size_t count);
 
 /// Adds changes to the coefficients of a camera_info, if one is not zero: its distortion model becomes that of
 /// the lens, unless it can hold them.

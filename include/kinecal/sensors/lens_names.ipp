@@ -67,6 +67,7 @@ KINECAL_INLINE bool bends_pinhole(std::string_view lens) {
 }
 
 KINECAL_INLINE bool contains_lens(std::string_view lens, std::string_view other) {
+  if (lens == other) return true;
   const detail::NamedLens *own = detail::find_lens(lens), *theirs = detail::find_lens(other);
   if (own == nullptr || theirs == nullptr) return false;
   return own == theirs ||
@@ -104,9 +105,13 @@ KINECAL_INLINE std::string lens_of(const CameraInfo& info) {
   return lens == "rational_polynomial" && used > 8 ? "thin_prism" : std::string(lens);
 }
 
-KINECAL_INLINE std::vector<double> coefficients_of(const CameraInfo& info, std::string_view lens) {
-  const detail::NamedLens &own = *detail::find_lens(lens),
-                          &theirs = *detail::find_lens(lens_of(info));
+KINECAL_INLINE std::vector<double> coefficients_of(const CameraInfo& info, std::string_view lens,
+                                                   std::size_t count) {
+  const detail::NamedLens* known = detail::find_lens(lens);
+  const bool is_known = known != nullptr && known->name == lens && known->coefficients == count;
+  const detail::NamedLens own = is_known ? *known : detail::NamedLens{lens, count};
+  const bool is_own = !is_known && info.distortion_model == lens;
+  const detail::NamedLens theirs = is_own ? own : *detail::find_lens(lens_of(info));
   const std::size_t used = detail::used_coefficients(info.d), size = info.d.size();
   const auto text = [](std::size_t n) {
     return std::to_string(n) + " distortion coefficient" + (n == 1 ? "" : "s");
@@ -124,7 +129,7 @@ KINECAL_INLINE std::vector<double> coefficients_of(const CameraInfo& info, std::
   }
   const bool contains = own.bends_pinhole && theirs.bends_pinhole && used <= own.coefficients;
   const bool is_any = info.distortion_model.empty() && used == 0;
-  if (&own != &theirs && !contains && !is_any) {
+  if (own.name != theirs.name && !contains && !is_any) {
     throw SettingsError("its lens is " + std::string(lens) + ", but camera_info has " +
                         (used > 0 ? "the " + text(used) + " of " : "the lens ") +
                         std::string(theirs.name));
@@ -151,7 +156,7 @@ KINECAL_INLINE void set_coefficients(CameraInfo& info, std::string_view lens,
                                 std::string(coefficients[which].name) +
                                 "' must be held, or the image is raw ('image: raw')");
   }
-  std::vector<double> d = coefficients_of(info, lens);
+  std::vector<double> d = coefficients_of(info, lens, coefficients.size());
   for (std::size_t i = 0; i < d.size(); ++i) d[i] += changes[i];
   // the model that its driver writes and as many coefficients, if they hold the lens
   const std::string_view model = distortion_model_of(lens);

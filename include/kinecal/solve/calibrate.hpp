@@ -38,8 +38,10 @@ struct CalibrationStep {
 
 /// Everything that calibrate() needs.
 struct Calibration {
-  ParameterTable table;                ///< all parameters of all steps, at their initial values
+  ParameterTable table;  ///< all parameters of all steps: Parameter::value is the initial one
   std::vector<CalibrationStep> steps;  ///< in the order in which they are solved
+  /// Where the first step begins, if an earlier solution is nearer than the initial values; of each parameter.
+  std::vector<double> begin = {};
 };
 
 /// Leaves samples out of all steps.
@@ -54,8 +56,8 @@ struct CalibrationResult {
   std::string termination;              ///< of the last step that ran
   std::vector<StepResult> steps;        ///< the steps that ran
   std::vector<BlockStatistics> blocks;  ///< of error blocks and priors, before and after
-  ParameterTable table;                 ///< at the final values
-  std::vector<int> calibrated;          ///< table indices of all parameters that some step freed
+  ParameterTable table;         ///< at the final values, with those before as Parameter::initial
+  std::vector<int> calibrated;  ///< table indices of all parameters that some step freed
 };
 
 /// Called while a step runs: name of the step, iteration, cost.

@@ -118,6 +118,9 @@ KINECAL_INLINE CalibrationResult calibrate(const Calibration& calibration, const
   result.table = calibration.table;
   const Eigen::VectorXd initial = calibration.table.values();
   Eigen::VectorXd values = initial;
+  if (!calibration.begin.empty()) {
+    values = Eigen::Map<const Eigen::VectorXd>(calibration.begin.data(), values.size());
+  }
   for (const CalibrationStep& step : calibration.steps) {
     for (const auto& [parameter, value] : step.assignments) values(parameter) = value;
     SolveOptions options = solving;
@@ -149,7 +152,10 @@ KINECAL_INLINE CalibrationResult calibrate(const Calibration& calibration, const
     detail::merge_statistics(result.blocks, block_statistics(*calibration.steps[s].problem,
                                                              span(initial), span(values)));
   }
-  for (int i = 0; i < result.table.size(); ++i) result.table[i].value = values(i);
+  for (int i = 0; i < result.table.size(); ++i) {
+    result.table[i].initial = initial(i);
+    result.table[i].value = values(i);
+  }
   return result;
 }
 

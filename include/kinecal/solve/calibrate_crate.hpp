@@ -4,6 +4,7 @@
 //   const double elbow = result.value<JointOffset<"elbow_flex_joint">>();
 //
 //   ParameterTable table = HandEye().table(samples);     // for other initial values, or bounds
+//   table["elbow_flex_joint"].value = 0.03;              // where it starts
 //   table["elbow_flex_joint"].upper = 0.05;
 //   const CrateResult<HandEye> bounded = calibrate(HandEye(), table, samples);
 // SPDX-License-Identifier: Apache-2.0

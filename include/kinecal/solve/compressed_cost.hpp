@@ -31,6 +31,9 @@
 
 namespace kinecal::detail {
 
+/// Of normal equations with a unit diagonal: rounding of the sums.
+inline constexpr double kNoCurvature = 1e-13;
+
 /// A residual and Jacobian equivalent to normal equations.
 struct EquivalentResidual {
   Eigen::VectorXd residual;  ///< (parameters + 1)
@@ -56,9 +59,12 @@ class CompressedCost final : public ceres::CostFunction {
   CompressedCost(AnyEvaluator& evaluator, Eigen::VectorXd values, Losses losses = Losses::as_given,
                  Blocks blocks = {});
 
-  /// Returns false where a residual is undefined: Ceres then takes a shorter step.
+  /// Returns false where a residual or a derivative is undefined: Ceres then takes a shorter step.
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
+  /// True if everything is defined.  Ceres logs a start that is not.
+  /// @param x  (parameters) the free ones, in one block
+  [[nodiscard]] bool is_defined_at(const double* x) const;
 
   /// The decrease of the cost that a Gauss-Newton step predicts where the Jacobian was last
   /// evaluated:  half the squared Newton decrement.
@@ -75,6 +81,7 @@ class CompressedCost final : public ceres::CostFunction {
   mutable int evaluations_ = 0;
   mutable std::optional<EquivalentResidual> last_;
   mutable Eigen::VectorXd last_values_;  ///< the values of `last_`
+  mutable bool is_defined_ = false;      ///< no number of `last_` is infinite or NaN
   Losses losses_;
   Blocks blocks_;
 };

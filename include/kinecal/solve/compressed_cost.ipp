@@ -9,9 +9,6 @@
 
 namespace kinecal::detail {
 
-/// Of a unit diagonal: rounding of the sums.
-inline constexpr double kNoCurvature = 1e-13;
-
 /// A and A^-T g of a regular H = D P^T L diag(d) L^T P D:  A = diag(sqrt d) L^T P D.
 /// @param gradient  D^-1 g
 /// @param scale     D
@@ -96,10 +93,12 @@ KINECAL_INLINE bool CompressedCost::Evaluate(double const* const* parameters, do
     ++evaluations_;
     const NormalEquations normal = evaluator_.normal_equations(
         {values_.data(), static_cast<std::size_t>(values_.size())}, true, losses_);
-    if (!std::isfinite(normal.cost)) return false;
     last_.emplace(normal);
     last_values_ = values_;
+    is_defined_ =
+        std::isfinite(normal.cost) && last_->residual.allFinite() && last_->jacobian.allFinite();
   }
+  if (!is_defined_) return false;
   Eigen::Map<Eigen::VectorXd>(residuals, free_.size() + 1) = last_->residual;
   if (jacobians == nullptr) return true;
   promised_decrease_ = 0.5 * last_->residual.head(free_.size()).squaredNorm();
@@ -110,6 +109,11 @@ KINECAL_INLINE bool CompressedCost::Evaluate(double const* const* parameters, do
         last_->jacobian(Eigen::all, blocks_[b]);
   }
   return true;
+}
+
+KINECAL_INLINE bool CompressedCost::is_defined_at(const double* x) const {
+  Eigen::VectorXd residual(free_.size() + 1);
+  return Evaluate(&x, residual.data(), nullptr);
 }
 
 }  // namespace kinecal::detail

@@ -57,6 +57,12 @@ inline void run_ceres(AnyEvaluator& evaluator, Eigen::VectorXd& values, const So
     ceres_problem.AddResidualBlock(cost, nullptr, x.data());
     compressed = cost;
   }
+  if (stack ? !stack->is_defined() : !compressed->is_defined_at(x.data())) {
+    minimum.usable = minimum.converged = false;
+    minimum.message = "a residual or a derivative is not defined at the start";
+    return;
+  }
+  if (compressed != nullptr) minimum.evaluations += compressed->evaluations();
   set_bounds(ceres_problem, problem.table(), free, x.data());
   take_steps(ceres_problem, x, options, compressed, minimum);
   if (!minimum.usable) return;

@@ -58,6 +58,8 @@ class StepCallback final : public ceres::IterationCallback {
   ceres_options.function_tolerance = options.function_tolerance;
   ceres_options.gradient_tolerance = 1e-16;
   ceres_options.parameter_tolerance = 1e-12;
+  // Beyond, rounding lets the factorization fail, and Ceres logs that, silent or not.
+  ceres_options.max_trust_region_radius = 1.0 / kNoCurvature;
   ceres_options.logging_type = ceres::SILENT;
   ceres_options.num_threads = 1;
   return ceres_options;

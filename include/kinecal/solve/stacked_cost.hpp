@@ -42,8 +42,14 @@ class StackedResiduals final : public ceres::EvaluationCallback {
   StackedResiduals(const AnyProblem& problem, const FreeSet& free, Eigen::VectorXd values,
                    const double* x, Losses losses);
 
-  /// Evaluates all features at Ceres' current point; called by Ceres.
-  void PrepareForEvaluation(bool jacobians, bool) override;
+  /// Evaluates all features at Ceres' current point; called by Ceres.  Always with derivatives: a trial step to
+  /// where one is undefined is refused.
+  void PrepareForEvaluation(bool, bool) override;
+  /// True if all residuals and derivatives are defined at the current point.  Ceres logs a start where they are not.
+  [[nodiscard]] bool is_defined() {
+    PrepareForEvaluation(true, true);
+    return defined_;
+  }
 
   /// Adds a residual block for each feature and prior.
   void add_to(ceres::Problem& problem, double* x);
@@ -58,7 +64,8 @@ class StackedResiduals final : public ceres::EvaluationCallback {
   Losses losses_;
   std::unique_ptr<AnyEvaluator> evaluator_;
   Stack rows_;
-  bool defined_ = true;
+  bool evaluated_ = false;  ///< at values_
+  bool defined_ = false;
 };
 
 }  // namespace kinecal

@@ -49,12 +49,16 @@ KINECAL_INLINE StackedResiduals::StackedResiduals(const AnyProblem& problem, con
   rows_.jacobian.resize(problem.num_residuals(), free.size());
 }
 
-KINECAL_INLINE void StackedResiduals::PrepareForEvaluation(bool jacobians, bool) {
+KINECAL_INLINE void StackedResiduals::PrepareForEvaluation(bool, bool) {
   for (int c = 0; c < free_.size(); ++c) {
-    values_(free_.parameters()[static_cast<std::size_t>(c)]) = x_[c];
+    double& value = values_(free_.parameters()[static_cast<std::size_t>(c)]);
+    evaluated_ = evaluated_ && value == x_[c];
+    value = x_[c];
   }
+  if (evaluated_) return;
   const ParameterValues values(values_.data(), static_cast<std::size_t>(values_.size()));
-  defined_ = !detail::stack_rows(*evaluator_, values, jacobians, 1.0, rows_);
+  defined_ = !detail::stack_rows(*evaluator_, values, true, 1.0, rows_);
+  evaluated_ = true;
 }
 
 KINECAL_INLINE void StackedResiduals::add_to(ceres::Problem& problem, double* x) {

@@ -69,7 +69,7 @@ struct SimulatedSetup {
   std::uint64_t seed = 1;                     ///< same seed: same robot, noise and faults
 };
 
-/// A robot, its camera and its lamp: models Arm, Camera and Lamp.
+/// A robot, its camera and its lamp: models RobotArm, RobotCamera and RobotLamp.
 class SimulatedRobot {
  public:
   /// @throws std::invalid_argument  if setup names links or joints that the robot does not have, or
@@ -117,6 +117,6 @@ class SimulatedRobot {
   struct State;
   std::unique_ptr<State> state_;
 };
-static_assert(Arm<SimulatedRobot> && Camera<SimulatedRobot> && Lamp<SimulatedRobot>);
+static_assert(RobotArm<SimulatedRobot> && RobotCamera<SimulatedRobot> && RobotLamp<SimulatedRobot>);
 
 }  // namespace kinecal

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/sensors/sensor_checks.hpp"
 #include "kinecal/testing/field_of_view.hpp"
 #include "kinecal/testing/sensor_input.hpp"
 #include "kinecal/testing/typical_observations.hpp"
@@ -75,7 +76,7 @@ class SensorCheck {
                                     const Values& values, const Jets& jets,
                                     bool smooth = false) const {
     const auto by_jets = jets(input, sensor_);
-    using Found = std::decay_t<decltype(by_jets)>;
+    using AsJets = std::decay_t<decltype(by_jets)>;
     const Eigen::MatrixXd value = values(input, sensor_), said = by_jets.derivatives;
     if (!value.allFinite()) return {whose(function + "it is not a number") + input.text()};
     if (!said.allFinite()) {
@@ -83,14 +84,14 @@ class SensorCheck {
               Named{"by jets", said}.text() + input.text()};
     }
     const auto at = [&](int k, double step) -> Eigen::MatrixXd {
-      return values(input.moved(k + kOwn - Found::kN, step), sensor_);
+      return values(input.moved(k + kOwn - AsJets::kN, step), sensor_);
     };
     const auto twice = [&](int k, double step) { return Eigen::MatrixXd(at(k, 2.0 * step) / 2.0); };
-    const Eigen::MatrixXd found = central_differences<Found::kM, Found::kN>(at);
+    const Eigen::MatrixXd found = central_differences<AsJets::kM, AsJets::kN>(at);
     const Verdict v =
         compare_derivatives(whose(function), {"by jets", said}, found, largest(value));
     if (!v && smooth) {
-      const Eigen::MatrixXd other = central_differences<Found::kM, Found::kN>(twice);
+      const Eigen::MatrixXd other = central_differences<AsJets::kM, AsJets::kN>(twice);
       if (!compare_derivatives("", {"", other}, found, largest(value))) return kLawsHold;
     }
     return v ? v : Verdict{v.text + input.text()};
@@ -182,17 +183,20 @@ class SensorCheck {
 /// Parameters are within 0.05 of their initial values.
 /// @param seen  recorded observations.  Default: two with 16 features each: points 0.5 to 2 m in
 ///              front of the sensor, pixels, readings of 0.5 to 2; with a camera of 640 x 480
-///              pixels, once rectified and once distorted.
+///              pixels, once without distortion and once distorted.
 /// @throws SettingsError  if the sensor cannot use an observation
-template <Sensor M>
+template <class M>
 [[nodiscard]] Verdict check_sensor(
     const M& sensor, const std::vector<Observation>& seen = detail::typical_observations<M>()) {
-  const auto inputs = detail::SensorInput<M, double>::of(sensor, seen);
-  const detail::SensorCheck<M> check(sensor);
-  if constexpr (PlacingSensor<M>) {
-    if (const Verdict v = check.places(inputs); !v) return v;
+  [[maybe_unused]] const detail::CheckSensorType<M> check_of_type{};
+  if constexpr (Sensor<M>) {
+    const auto inputs = detail::SensorInput<M, double>::of(sensor, seen);
+    const detail::SensorCheck<M> check(sensor);
+    if constexpr (PlacingSensor<M>) {
+      if (const Verdict v = check.places(inputs); !v) return v;
+    }
+    if constexpr (PredictingSensor<M>) return check.predicts(inputs);
   }
-  if constexpr (PredictingSensor<M>) return check.predicts(inputs);
   return kLawsHold;
 }
 

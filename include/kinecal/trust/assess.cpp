@@ -42,7 +42,7 @@ namespace {
       const int p = free.parameters()[static_cast<std::size_t>(of_owner[i])];
       group.parameters.push_back(p);
       change(static_cast<Eigen::Index>(i)) =
-          values[static_cast<std::size_t>(p)] - problem.table()[p].initial;
+          values[static_cast<std::size_t>(p)] - problem.table()[p].value;
       determined = determined && std::isfinite(known.deviation(of_owner[i]));
     }
     const Spectrum spectrum(known.covariance.matrix()(of_owner, of_owner));

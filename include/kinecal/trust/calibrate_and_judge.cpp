@@ -9,6 +9,7 @@
 
 #include "kinecal/trust/capture_causes.hpp"
 #include "kinecal/trust/estimated_noise.hpp"
+#include "kinecal/trust/judge_input.hpp"
 #include "kinecal/trust/ruined.hpp"
 
 namespace kinecal {
@@ -147,6 +148,7 @@ JudgedResult judge_result(const Calibration& calibration, CalibrationResult resu
     }
   }
   judged.judgement = judge(calibration, judged.result, judged.assessments, doubts, refutable);
+  judged.unused = judge_input(calibration, doubts, judged.judgement);
   return judged;
 }
 

@@ -40,6 +40,8 @@ struct JudgedResult {
   std::vector<Assessment> assessments;  ///< of its steps
   Judgement judgement;                  ///< the verdict
   std::vector<LeftOutSample> left_out;  ///< those that the caller excluded first
+  /// What it does not use of the other samples, as sentences: judge_input(); empty for samples in shards.
+  std::vector<std::string> unused;
   /// Source location of each sample of the problems; empty for samples in shards.
   std::vector<std::string> sources;
   std::vector<int> numbers;           ///< from 1, among all samples, of each of these

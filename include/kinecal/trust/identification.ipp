@@ -47,7 +47,7 @@ class Identification {
     for (const auto& [parameter, value] : step_.assignments)
       calibration.table[parameter].value = value;
     step_.assignments.clear();
-    for (const Parameter& p : calibration.table) initial_.push_back(p.value);
+    calibration.begin = initial_ = numbers_of(calibration.table);
     largest_ = smallest_ = Eigen::VectorXd(all_.size());
     for (int c = 0; c < all_.size(); ++c) {
       const int p = index(c);
@@ -82,13 +82,11 @@ class Identification {
 
   /// Begins with the initial values again, and searches for unknown poses.
   void begin_again() {
-    for (int p = 0; p < calibration_.table.size(); ++p) {
-      calibration_.table[p].value = initial_[static_cast<std::size_t>(p)];
-    }
+    calibration_.begin = initial_;
     step_.unknown_frames = unknown_;
   }
   /// Begins with the values of an earlier result.
-  void begin_at(const ParameterTable& table) { calibration_.table = table; }
+  void begin_at(const ParameterTable& table) { calibration_.begin = numbers_of(table); }
   /// begin_again() with another initial value of a candidate's parameter.
   void begin_with(int column, double change) {
     initial_[static_cast<std::size_t>(index(column))] += change;
@@ -103,13 +101,16 @@ class Identification {
     };
     add(base_);
     for (const int k : chosen) add(columns_[static_cast<std::size_t>(k)].columns);
-    for (int p = 0; p < calibration_.table.size(); ++p) {
-      if (std::find(free.begin(), free.end(), p) == free.end()) {
-        calibration_.table[p].value = initial_[static_cast<std::size_t>(p)];
-      }
-    }
     CalibrationResult result;
     result.table = calibration_.table;
+    for (int p = 0; p < result.table.size(); ++p) {
+      double& now = calibration_.begin[static_cast<std::size_t>(p)];
+      if (std::find(free.begin(), free.end(), p) == free.end()) {
+        now = initial_[static_cast<std::size_t>(p)];
+      }
+      result.table[p].initial = result.table[p].value;
+      result.table[p].value = now;
+    }
     constexpr int kSolves = 5;
     for (int round = 0; round < kSolves; ++round) {
       if (free.empty()) {
@@ -118,11 +119,10 @@ class Identification {
         step_.free = FreeSet(free, calibration_.table.size());
         result = calibrate(calibration_);
         if (!result.converged) return result;
-        calibration_.table = result.table;
+        calibration_.begin = numbers_of(result.table);
         step_.unknown_frames.clear();  // they are known from here on
       }
-      values_.clear();
-      for (const Parameter& p : calibration_.table) values_.push_back(p.value);
+      values_ = calibration_.begin;
       if (!update_noise()) break;
     }
     return result;
@@ -156,6 +156,10 @@ class Identification {
   [[nodiscard]] std::string unit() const { return sigmas_.size() > 1 ? "1" : noise_unit(); }
 
  private:
+  [[nodiscard]] static std::vector<double> numbers_of(const ParameterTable& table) {
+    const Eigen::VectorXd values = table.values();
+    return {values.begin(), values.end()};
+  }
   [[nodiscard]] int index(int column) const {
     return all_.parameters()[static_cast<std::size_t>(column)];
   }

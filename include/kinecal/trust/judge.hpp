@@ -27,6 +27,8 @@
 //                                                       residuals of a camera that grow with the
 //                                                       distance from the center: its lens
 //   a lens that folds over among the features          beyond them, inside the image
+//   copies of one sample alone                          one of fifty a copy, a tenth under the name of no sensor, a
+//                                                       quarter not numbers (judge_input.hpp)
 //                                                       doubts about the input
 //
 // Freedom is the number of residuals minus the number of determined parameters.  Undetermined

@@ -115,6 +115,7 @@ class ShardProcedure {
       if (!solve(s, of_step, initial, guess, values, judged)) break;
     }
     for (int i = 0; i < judged.result.table.size(); ++i) {
+      judged.result.table[i].initial = initial[static_cast<std::size_t>(i)];
       judged.result.table[i].value = values[static_cast<std::size_t>(i)];
     }
     return judged;

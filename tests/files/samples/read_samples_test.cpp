@@ -685,5 +685,25 @@ TEST(ReadSamples, RecordedSamplesOfPandaAreRead) {
             Vector3<double>(0.05, 0.0, 0.0));
 }
 
+TEST(ReadSamples, ATextInMemoryIsReadLikeItsFile) {
+  const std::string wrong = kSample + kJoints + "observations: 3\n---\n" + kSample;
+  for (const std::string& text : {kSample + kSample, wrong, std::string("joint_states: [")}) {
+    const ReadText of_file = read_text(text);
+    Diagnostics diagnostics;
+    const std::vector<Sample> samples = parse_samples(text, of_file.path, diagnostics);
+    EXPECT_EQ(diagnostics.errors, of_file.diagnostics.errors);
+    EXPECT_EQ(diagnostics.warnings, of_file.diagnostics.warnings);
+    ASSERT_EQ(samples.size(), of_file.samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      EXPECT_EQ(samples[i].source, of_file.samples[i].source);
+      EXPECT_EQ(samples[i].joint_positions, of_file.samples[i].joint_positions);
+      EXPECT_EQ(samples[i].observations.size(), of_file.samples[i].observations.size());
+    }
+  }
+  Diagnostics diagnostics;
+  EXPECT_THAT(parse_samples("#ROSBAG V2.0\n", "text", diagnostics), IsEmpty());
+  EXPECT_THAT(diagnostics.errors, ElementsAre(StartsWith("text: is a bag")));
+}
+
 }  // namespace
 }  // namespace kinecal

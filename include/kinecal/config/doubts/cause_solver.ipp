@@ -48,7 +48,7 @@ struct CauseSolver {
     step.assignments.clear();
   }
   for (int i = 0; solver.from != nullptr && i < calibration.table.size(); ++i) {
-    calibration.table[i].value = (*solver.from)[calibration.table[i].name].value;
+    calibration.begin.push_back((*solver.from)[calibration.table[i].name].value);
   }
   if (!quiet.errors.empty() || calibration.steps.empty()) return std::nullopt;
   const CalibrationResult result = solver.solve(calibration);

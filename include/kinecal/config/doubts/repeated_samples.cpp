@@ -14,6 +14,7 @@
 
 #include "kinecal/config/doubts/occurrences.hpp"
 #include "kinecal/config/doubts/same_feature.ipp"
+#include "kinecal/trust/judge_input.hpp"
 
 namespace kinecal::detail {
 
@@ -149,7 +150,7 @@ inline void report_copies(const Repetitions& found, std::span<const Sample> samp
                                          "features are equal; record different poses",
                                          samples.size()));
   } else if (50 * copies.count > samples.size()) {
-    diagnostics.doubt(place, text + "; copies count twice and say nothing new; remove them");
+    diagnostics.doubt(place, fmt::format("{}; {}", text, kCopiesCountTwice));
   } else {
     diagnostics.warning(place, text);
   }

@@ -24,27 +24,24 @@
 
 namespace kinecal {
 
-namespace detail {
-namespace {
-
-[[nodiscard]] std::vector<Sample> read_stream(const std::string& path, Diagnostics& diagnostics) {
-  const std::string text = read_text_file(path);
-  if (is_bag(std::as_bytes(std::span(text)))) {
-    diagnostics.error({path, 0}, "is a bag, which can be read from a file only; give its name");
+std::vector<Sample> parse_samples(const std::string& text, const std::string& name_for_messages,
+                                  Diagnostics& diagnostics) {
+  if (detail::is_bag(std::as_bytes(std::span(text)))) {
+    diagnostics.error({name_for_messages, 0},
+                      "is a bag, which can be read from a file only; give its name");
     return {};
   }
   std::istringstream in(text);
-  SampleFile file(in, path);
+  detail::SampleFile file(in, name_for_messages);
   file.read(1);
   return file.take(diagnostics);
 }
 
-}  // namespace
-}  // namespace detail
-
 std::vector<Sample> read_samples(const std::string& path, Diagnostics& diagnostics,
                                  unsigned threads, const ProgressMeter& meter) {
-  if (detail::is_stream(path)) return detail::read_stream(path, diagnostics);
+  if (detail::is_stream(path)) {
+    return parse_samples(detail::read_text_file(path), path, diagnostics);
+  }
   if (const std::string why = detail::why_no_file(path); !why.empty()) {
     diagnostics.error({path, 0}, why);
     return {};
@@ -86,10 +83,7 @@ std::vector<Sample> read_complete_samples(const std::string& path, Diagnostics& 
   }
   text.resize(end);
   if (end == 0) return {};
-  std::istringstream complete(text);
-  detail::SampleFile file(complete, path);
-  file.read(1);
-  return file.take(diagnostics);
+  return parse_samples(text, path, diagnostics);
 }
 
 }  // namespace kinecal

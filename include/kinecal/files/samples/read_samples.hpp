@@ -32,6 +32,12 @@ namespace kinecal {
                                                unsigned threads = 0,
                                                const ProgressMeter& meter = {});
 
+/// The same from the text of such a file.
+/// @param name_for_messages  name of the text in messages and in Sample::source: its file
+[[nodiscard]] std::vector<Sample> parse_samples(const std::string& text,
+                                                const std::string& name_for_messages,
+                                                Diagnostics& diagnostics);
+
 /// The complete samples of a file that was truncated while being written: those followed by `---`.
 /// @param diagnostics  like read_samples(); a warning if the last sample is dropped
 [[nodiscard]] std::vector<Sample> read_complete_samples(const std::string& path,

@@ -98,7 +98,7 @@ bool prepare_later_cameras(const Robot& robot, const Config& config,
   for (const ModelConfig& camera : detail::models_of(config)) {
     const SensorEntry* entry = entry_of(camera);
     const CameraInfo* info = detail::info_of(camera.name, first);
-    if (entry == nullptr || !entry->has_lens || info == nullptr) continue;
+    if (entry == nullptr || entry->lenses.empty() || info == nullptr) continue;
     detail::take_first(camera.name, *info, samples);
   }
   detail::place_targets(robot, config, pairs, samples, diagnostics);

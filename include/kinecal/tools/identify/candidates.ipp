@@ -62,10 +62,10 @@ struct ModelChain {
   const SensorEntry* entry = entry_of(model);
   if (entry == nullptr) return {};
   const std::shared_ptr<const AnySensor> sensor = sensor_of(model);
-  const bool has_lens = entry->has_lens && model.image != ImageKind::rectified;
+  const bool has_lens = !entry->lenses.empty() && model.image != ImageKind::rectified;
   std::vector<std::string> names;
   for (const ParameterInfo& info : sensor->parameters()) {
-    const bool is_of_lens = entry->has_lens && names.size() >= kIntrinsics;
+    const bool is_of_lens = !entry->lenses.empty() && names.size() >= kIntrinsics;
     const std::string name = parameter_name(model.param_name, info.name);
     const bool is_bend = model.type == DepthCamera::kType &&
                          names.size() >= DepthCamera::kWithoutPolynomial && !is_free(step, name);

@@ -1,0 +1,36 @@
+// A lens of a user's own: the division model with one coefficient.
+// Source: Fitzgibbon, Simultaneous Linear Estimation of Multiple View Geometry and Lens Distortion, 2001.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/sensors/lens_camera.hpp"
+
+namespace kinecal::test {
+
+/// (x, y, z) = (x', y', 1 + k r'^2) up to scale
+struct Division {
+  static constexpr std::string_view kName = "division";
+  static constexpr std::array kCoefficients = {ParameterInfo{"k"}};
+
+  template <class S, class C>
+  static Eigen::Matrix<S, 2, 1> image(const Vector3<S>& p, const std::array<C, 1>& d) {
+    using std::sqrt;
+    const S x = p.x() / p.z(), y = p.y() / p.z();
+    const S scale = 2.0 / (1.0 + sqrt(S(1.0 - 4.0 * d[0] * (x * x + y * y))));
+    return {x * scale, y * scale};
+  }
+  template <class S, class C>
+  static Sight<S> sight(const Eigen::Matrix<S, 2, 1>& at, const std::array<C, 1>& d) {
+    const S x = at.x(), y = at.y();
+    return {{x, y, S(1.0 + d[0] * (x * x + y * y))},
+            {S(1.0), S(0.0), S(2.0 * d[0] * x)},
+            {S(0.0), S(1.0), S(2.0 * d[0] * y)}};
+  }
+  template <class S>
+  static auto sees(const Vector3<S>& p) {
+    return p.z() > S(0.0);
+  }
+};
+static_assert(LensModel<Division> && Sensor<LensCamera<Division>>);
+
+}  // namespace kinecal::test
