@@ -11,6 +11,7 @@
 #include "kinecal/trust/assess_shards.hpp"
 #include "kinecal/trust/estimated_noise.hpp"
 #include "kinecal/trust/judge_files.hpp"
+#include "kinecal/trust/judge_input.hpp"
 #include "kinecal/trust/shard_folds.ipp"
 
 namespace kinecal {
@@ -54,6 +55,8 @@ class ShardProcedure {
     judged.judgement = judge(calibration_.calibration, judged.result, judged.assessments,
                              options_.doubts, options_.refutable);
     judge_files(found_, calibration_.names, judged.judgement);
+    judged.unused =
+        judge_input(calibration_.calibration, options_.doubts, judged.judgement);
     return judged;
   }
 
