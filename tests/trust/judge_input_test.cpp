@@ -39,19 +39,19 @@ TEST(JudgeInput, SaysNothingOfSamplesThatAreUsed) {
 
 TEST(JudgeInput, NamesAMisspeltSensorAndDoubtsTheResultIfManySamplesHaveIt) {
   test::NoisyScene scene(40);
-  const auto misspell = [&](std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) camera_of(scene.samples[i]).sensor = "camra";
+  const auto misspell = [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) camera_of(scene.samples[i]).sensor = "camra";
   };
   const auto expected = [&](const std::string& count) {
     return "'camra' is observed in " + count + " of 40 samples (the first is " +
            scene.samples[0].source +
            "), and is not a sensor of the calibration; did you mean 'camera'?";
   };
-  misspell(1);
+  misspell(0, 1);
   const JudgedResult one = judged(scene);
   EXPECT_THAT(one.unused, ElementsAre(expected("1")));
   EXPECT_EQ(one.judgement.verdict, Grade::good);
-  misspell(15);
+  misspell(1, 15);
   const JudgedResult many = judged(scene);
   EXPECT_THAT(many.unused, ElementsAre(expected("15")));
   EXPECT_THAT(many.judgement.reasons, Contains(expected("15")));
