@@ -61,9 +61,8 @@ function(kinecal_add_part part library level)
     $<TARGET_PROPERTY:Ceres::ceres,INTERFACE_COMPILE_DEFINITIONS>)
   target_compile_features(${part} PRIVATE cxx_std_20)
   target_link_libraries(${part} PRIVATE Eigen3::Eigen Threads::Threads kinecal_warnings)
-  get_target_property(options kinecal_${library} COMPILE_OPTIONS)
   # g++ 12 takes what AVX-512's own headers leave undefined for a mistake (GCC bug 105593).
-  target_compile_options(${part} PRIVATE ${options} -march=${level}
+  target_compile_options(${part} PRIVATE -march=${level}
     $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized>)
   set_target_properties(${part} PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endfunction()

@@ -65,36 +65,69 @@ function(kinecal_group_sources result name count folder)
   set(${result} ${units} PARENT_SCOPE)
 endfunction()
 
-# kinecal_add_library(<name> FOLDERS <folder>... LINK <target>... [UNIT <count>] [OPTIMIZE <flag>]
-#                     [PRIVATE_LINK <target>...] [ALONE <file>...])
-#
-# FOLDERS       of include/kinecal: their headers, their .cpp, and the .ipp beside a header of the same
-#               name, which are compiled once; with KINECAL_HEADER_ONLY, .ipp are not compiled here
-# ALONE         of these folders: .ipp that are units of their own with KINECAL_UNITY, too
-# UNIT          so many sources are one translation unit with KINECAL_UNITY
-# OPTIMIZE      in place of Release's -O3
-# LINK          what the headers include
-# PRIVATE_LINK  what only the definitions include
-function(kinecal_add_library name)
-  cmake_parse_arguments(ARG "" "UNIT;OPTIMIZE" "FOLDERS;LINK;PRIVATE_LINK;ALONE" ${ARGN})
-  set(target kinecal_${name})
-  set(include ${PROJECT_SOURCE_DIR}/include/kinecal)
-  set(headers "")
+# The translation units of folders: of each .cpp, and each .ipp beside a header of the same name, but with
+# KINECAL_HEADER_ONLY of no .ipp.
+# @param result  the variable to set
+# @param count   so many sources are one unit with KINECAL_UNITY
+# @param alone   sources that are units of their own
+# @param flag    how a release optimizes them; empty for -O3
+# @param ARGN    folders
+function(kinecal_add_units result name count alone flag)
+  set(sources "")
   set(units "")
-  set(alone "")
-  foreach(folder IN LISTS ARG_FOLDERS)
-    file(GLOB_RECURSE found CONFIGURE_DEPENDS ${include}/${folder}/*.hpp)
-    list(APPEND headers ${found} ${include}/${folder}.hpp)
-    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${include}/${folder}/*.cpp)
-    list(APPEND units ${sources})
-    file(GLOB_RECURSE definitions CONFIGURE_DEPENDS ${include}/${folder}/*.ipp)
+  foreach(folder IN LISTS ARGN)
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS ${folder}/*.cpp)
+    list(APPEND sources ${found})
+    file(GLOB_RECURSE definitions CONFIGURE_DEPENDS ${folder}/*.ipp)
     foreach(file IN LISTS definitions)
       cmake_path(REPLACE_EXTENSION file hpp OUTPUT_VARIABLE header)
       if(EXISTS ${header} AND NOT KINECAL_HEADER_ONLY)
-        list(APPEND units ${file})
+        list(APPEND sources ${file})
       endif()
     endforeach()
   endforeach()
+  foreach(file IN LISTS alone)
+    if(file IN_LIST sources)
+      list(REMOVE_ITEM sources ${file})
+      kinecal_group_sources(unit ${name} 1 ${PROJECT_SOURCE_DIR}/include ${file})
+      list(APPEND units ${unit})
+    endif()
+  endforeach()
+  if(sources)
+    kinecal_group_sources(grouped ${name} ${count} ${PROJECT_SOURCE_DIR}/include ${sources})
+    list(APPEND units ${grouped})
+  endif()
+  if(units AND flag)
+    set_source_files_properties(${units} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:${flag}>)
+  endif()
+  set(${result} ${units} PARENT_SCOPE)
+endfunction()
+
+# kinecal_add_library(<name> FOLDERS <folder>... LINK <target>... [WARM <folder>...] [COLD <folder>...]
+#                     [UNIT <count>] [PRIVATE_LINK <target>...] [ALONE <file>...])
+#
+# FOLDERS       of include/kinecal: their headers and sources
+# WARM, COLD    more folders: a release compiles them with -O2 or -O1, not -O3, as a calibration spends
+#               little or hardly any of its time in them
+# ALONE         of these folders: sources that are units of their own with KINECAL_UNITY, too
+# UNIT          so many sources are one translation unit with KINECAL_UNITY
+# LINK          what the headers include
+# PRIVATE_LINK  what only the definitions include
+function(kinecal_add_library name)
+  cmake_parse_arguments(ARG "" "UNIT" "FOLDERS;WARM;COLD;LINK;PRIVATE_LINK;ALONE" ${ARGN})
+  set(target kinecal_${name})
+  set(headers "")
+  foreach(list FOLDERS WARM COLD ALONE)
+    list(TRANSFORM ARG_${list} PREPEND ${PROJECT_SOURCE_DIR}/include/kinecal/)
+  endforeach()
+  foreach(folder IN LISTS ARG_FOLDERS ARG_WARM ARG_COLD)
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS ${folder}/*.hpp)
+    list(APPEND headers ${found} ${folder}.hpp)
+  endforeach()
+  kinecal_add_units(units ${name} "${ARG_UNIT}" "${ARG_ALONE}" "" ${ARG_FOLDERS})
+  kinecal_add_units(warm ${name} "${ARG_UNIT}" "${ARG_ALONE}" -O2 ${ARG_WARM})
+  kinecal_add_units(cold ${name} "${ARG_UNIT}" "${ARG_ALONE}" -O1 ${ARG_COLD})
+  list(APPEND units ${warm} ${cold})
 
   if(NOT units)
     set(scope INTERFACE)
@@ -102,18 +135,10 @@ function(kinecal_add_library name)
     target_link_libraries(${target} INTERFACE ${ARG_LINK} ${ARG_PRIVATE_LINK})
   else()
     set(scope PUBLIC)
-    list(TRANSFORM ARG_ALONE PREPEND ${include}/)
-    if(ARG_ALONE)
-      list(REMOVE_ITEM units ${ARG_ALONE})
-      kinecal_group_sources(alone ${name} 1 ${PROJECT_SOURCE_DIR}/include ${ARG_ALONE})
-    endif()
-    kinecal_group_sources(units ${name} ${ARG_UNIT} ${PROJECT_SOURCE_DIR}/include ${units})
-    list(PREPEND units ${alone})
     add_library(${target} ${units})
     target_link_libraries(${target} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK}
                           $<BUILD_INTERFACE:kinecal_build_options>)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${ARG_OPTIMIZE}>)
   endif()
   set(KINECAL_UNITS_${name} ${units} PARENT_SCOPE)
   add_library(kinecal::${name} ALIAS ${target})
@@ -149,12 +174,14 @@ kinecal_add_library(core UNIT 16
 kinecal_add_library(capture UNIT 30
   FOLDERS capture
   LINK kinecal_core)
-kinecal_add_library(solve UNIT 50
-  FOLDERS solve trust
+kinecal_add_library(solve UNIT 11
+  FOLDERS solve
+  WARM trust
   LINK kinecal_core Ceres::ceres
   PRIVATE_LINK Boost::headers)
-kinecal_add_library(io UNIT 33 OPTIMIZE -O2
-  FOLDERS study files config robots report tools procedure
+kinecal_add_library(io UNIT 30
+  WARM files  # readers of large recordings
+  COLD study config robots report tools procedure
   LINK kinecal_capture kinecal_solve nlohmann_json::nlohmann_json
   PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB
                OpenSSL::Crypto Boost::headers)

@@ -8,11 +8,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <span>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/solve/eigenpairs.hpp"
 #include "kinecal/solve/spectrum.hpp"
 
 namespace kinecal::detail {
@@ -27,12 +27,12 @@ namespace kinecal::detail {
                                             const Eigen::MatrixXd& open) {
   if (open.cols() == 0) return information;
   const Eigen::MatrixXd across = information * open;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(open.transpose() * across);
+  const Eigenpairs pairs = eigenpairs(open.transpose() * across);
   constexpr double kNothing = 1e-10;  // of the largest: residuals are 1e-5 of the robot's size
   const double least = kNothing * information.diagonal().maxCoeff();
-  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr(
-      [&](double value) { return value > least ? 1.0 / value : 0.0; });
-  const Eigen::MatrixXd by = across * eigen.eigenvectors();
+  const Eigen::VectorXd inverse =
+      pairs.values.unaryExpr([&](double value) { return value > least ? 1.0 / value : 0.0; });
+  const Eigen::MatrixXd by = across * pairs.vectors;
   return information - by * inverse.asDiagonal() * by.transpose();
 }
 
@@ -41,7 +41,6 @@ namespace kinecal::detail {
 /// @param measured    (n x n) information at the measured points
 inline void take_away_null_of(const Eigen::MatrixXd& error_free, const Eigen::MatrixXd& measured,
                               Spectrum& spectrum) {
-  using Eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
   const Eigen::Index rank = spectrum.singular.size() - spectrum.null;
   if (rank == 0) return;
   const Eigen::MatrixXd basis = spectrum.vectors.rightCols(rank);
@@ -50,16 +49,16 @@ inline void take_away_null_of(const Eigen::MatrixXd& error_free, const Eigen::Ma
     return Eigen::MatrixXd(units.asDiagonal() * information * units.asDiagonal());
   };
   const Eigen::MatrixXd left = beside(scaled(measured), spectrum.vectors.leftCols(spectrum.null));
-  const Eigenvalues eigen(basis.transpose() * left * basis);
-  const double least = kUnobservable * kUnobservable * eigen.eigenvalues().maxCoeff();
-  const Eigen::Index lost = (eigen.eigenvalues().array() <= least).count();
+  const Eigenpairs pairs = eigenpairs(basis.transpose() * left * basis);
+  const double least = kUnobservable * kUnobservable * pairs.values.maxCoeff();
+  const Eigen::Index lost = (pairs.values.array() <= least).count();
   if (lost == 0 || lost == rank) return;
-  const Eigen::MatrixXd kept = basis * eigen.eigenvectors().rightCols(rank - lost);
-  const Eigenvalues of_kept(kept.transpose() * scaled(error_free) * kept);
-  spectrum.vectors.middleCols(spectrum.null, lost) = basis * eigen.eigenvectors().leftCols(lost);
-  spectrum.vectors.rightCols(rank - lost) = kept * of_kept.eigenvectors();
+  const Eigen::MatrixXd kept = basis * pairs.vectors.rightCols(rank - lost);
+  const Eigenpairs of_kept = eigenpairs(kept.transpose() * scaled(error_free) * kept);
+  spectrum.vectors.middleCols(spectrum.null, lost) = basis * pairs.vectors.leftCols(lost);
+  spectrum.vectors.rightCols(rank - lost) = kept * of_kept.vectors;
   spectrum.singular.segment(spectrum.null, lost).setZero();
-  spectrum.singular.tail(rank - lost) = of_kept.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  spectrum.singular.tail(rank - lost) = of_kept.values.cwiseMax(0.0).cwiseSqrt();
   spectrum.null += lost;
 }
 

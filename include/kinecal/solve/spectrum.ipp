@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <utility>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/solve/eigenpairs.hpp"
 #include "kinecal/solve/spectrum.hpp"
 
 namespace kinecal::detail {
@@ -28,9 +29,9 @@ KINECAL_INLINE Spectrum::Spectrum(const Eigen::MatrixXd& information)
   if (information.size() == 0) return;  // Eigen's solver takes no empty matrix
   const Eigen::MatrixXd scaled =
       scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  singular = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  vectors = eigen.eigenvectors();
+  Eigenpairs pairs = eigenpairs(scaled);
+  singular = pairs.values.cwiseMax(0.0).cwiseSqrt();
+  vectors = std::move(pairs.vectors);
   // all of them where the Jacobian is zero
   null = (singular.array() <= kUnobservable * singular.maxCoeff()).count();
 }

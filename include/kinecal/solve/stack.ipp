@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
 
+#include "kinecal/solve/eigenpairs.hpp"
 #include "kinecal/solve/stack.hpp"
 
 namespace kinecal {
@@ -41,12 +41,12 @@ KINECAL_INLINE std::optional<Eigen::MatrixXd> Stack::covariance() const {
   if (!(lengths.array() > 0.0).all()) return std::nullopt;
   const Eigen::VectorXd scale = lengths.cwiseInverse();
   const Eigen::MatrixXd columns = jacobian * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(columns.transpose() * columns);
-  if (!(eigen.eigenvalues()(0) > kLeast * static_cast<double>(columns.cols()))) {
+  const detail::Eigenpairs pairs = detail::eigenpairs(columns.transpose() * columns);
+  if (!(pairs.values(0) > kLeast * static_cast<double>(columns.cols()))) {
     return std::nullopt;
   }
-  const Eigen::MatrixXd v = scale.asDiagonal() * eigen.eigenvectors();
-  return v * eigen.eigenvalues().cwiseInverse().asDiagonal() * v.transpose();
+  const Eigen::MatrixXd v = scale.asDiagonal() * pairs.vectors;
+  return v * pairs.values.cwiseInverse().asDiagonal() * v.transpose();
 }
 
 KINECAL_INLINE Stack stack(const AnyProblem& problem, const FreeSet& free, ParameterValues values) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kinecal/kinematics/robot.hpp"
+#include "kinecal/solve/ldlt.hpp"
 #include "kinecal/trust/capture_trials.ipp"
 #include "kinecal/trust/judge.hpp"
 
@@ -151,14 +152,15 @@ struct JointCause {
       slopes.col(i) = (there.rows - found[0].rows) / kJointStep;
     }
     const Eigen::MatrixXd squares = slopes.transpose() * slopes;
-    const Eigen::LDLT<Eigen::MatrixXd> solver(squares + prior);
+    const Ldlt ldlt(squares + prior);
     if (iteration + 1 ==
         kIterations) {  // at first, the residual rotates with the joints, which fits more
-      const double fitted = solver.solve(squares).trace();
+      const double fitted = ldlt.solve(squares).trace();
       if (static_cast<double>(now.rows.size()) - fitted < kTested) return std::nullopt;
     }
     const Eigen::VectorXd so_far = change(moving);
-    change(moving) -= solver.solve(slopes.transpose() * found[0].rows + prior * so_far);
+    const Eigen::VectorXd slope = slopes.transpose() * found[0].rows + prior * so_far;
+    change(moving) -= ldlt.solve(slope);
   }
   return change;
 }

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/common_noise.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "kinecal/solve/ldlt.hpp"
 #include "kinecal/trust/pose_rows.ipp"
 
 namespace kinecal {
@@ -90,7 +91,7 @@ class PoseFit {
         right += axis(1) / (variance * variance) * axis(0) * by;
       }
       constexpr double kLeast = 1e-2;
-      if (!own_is_known) own = std::max(kLeast, matrix.ldlt().solve(right)(0));
+      if (!own_is_known) own = std::max(kLeast, Ldlt(matrix).solve(Eigen::VectorXd(right))(0));
       t2 = matrix(1, 1) > 0.0 ? std::max(0.0, (right(1) - own * matrix(0, 1)) / matrix(1, 1)) : 0.0;
     }
     common.repeats = std::sqrt(t2);

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
+#include "kinecal/solve/eigenpairs.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/drift.hpp"
 
@@ -17,14 +17,12 @@ namespace kinecal::detail {
 [[nodiscard]] inline Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Eigen::VectorXd inverse = scale.unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(inverse.asDiagonal() * covariance *
-                                                              inverse.asDiagonal());
+  const Eigenpairs pairs = eigenpairs(inverse.asDiagonal() * covariance * inverse.asDiagonal());
   constexpr double kRounding = 1e-14;
-  const Eigen::VectorXd roots = solver.eigenvalues().unaryExpr(
+  const Eigen::VectorXd roots = pairs.values.unaryExpr(
       [](double lambda) { return lambda > kRounding ? std::sqrt(lambda) : 0.0; });
   const auto zeros = std::count(roots.begin(), roots.end(), 0.0);
-  return scale.asDiagonal() *
-         (solver.eigenvectors() * roots.asDiagonal()).rightCols(roots.size() - zeros);
+  return scale.asDiagonal() * (pairs.vectors * roots.asDiagonal()).rightCols(roots.size() - zeros);
 }
 
 /// The noise of an error block.

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "kinecal/solve/ldlt.hpp"
 #include "kinecal/trust/drift_fit.ipp"
 #include "kinecal/trust/f_distribution.hpp"
 
@@ -156,7 +157,7 @@ class DriftSearch {
       const Eigen::VectorXd r = rows.residual.segment(first, size);
       const Eigen::MatrixXd variance =
           Eigen::MatrixXd::Identity(size, size) - j * now.at.inverse * j.transpose();
-      const double off = r.dot(variance.ldlt().solve(r));
+      const double off = r.dot(Ldlt(variance).solve(r));
       const double mean = off / static_cast<double>(size);
       const double p = chance(off, static_cast<double>(size), now.at);
       if (!(p < least || (worst && p == least && std::sqrt(mean) > worst->times))) {

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/gradient_variance.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "kinecal/solve/eigenpairs.hpp"
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/pose_rows.ipp"
 
@@ -22,11 +22,10 @@ namespace {
     const Eigen::VectorXd first = share * g, second = share * first, third = share * second;
     return g + 0.5 * first + 0.375 * second + 0.3125 * third;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(share);
+  const Eigenpairs spectrum = eigenpairs(share);
   constexpr double kAlone = 1e-6;
-  const Eigen::ArrayXd factor = (1.0 + kAlone - spectrum.eigenvalues().array()).max(kAlone).rsqrt();
-  return spectrum.eigenvectors() *
-         (factor * (spectrum.eigenvectors().transpose() * g).array()).matrix();
+  const Eigen::ArrayXd factor = (1.0 + kAlone - spectrum.values.array()).max(kAlone).rsqrt();
+  return spectrum.vectors * (factor * (spectrum.vectors.transpose() * g).array()).matrix();
 }
 
 /// Sums over one group, and over all.

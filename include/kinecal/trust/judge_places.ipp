@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +10,7 @@
 #include <string>
 
 #include "kinecal/parameters/parameter_table.hpp"
+#include "kinecal/solve/eigenpairs.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/joint_effects.ipp"
 #include "kinecal/trust/judge.hpp"
@@ -30,9 +31,9 @@ namespace kinecal::detail {
     }
     moves.col(c).normalize();
   }
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(moves);
-  svd.setThreshold(1e-3);
-  return svd.rank() == 3;
+  constexpr double kInOnePlane = 1e-3;  // least singular value, of the largest
+  const Eigen::VectorXd squares = eigenpairs(moves * moves.transpose()).values;
+  return squares(0) > kInOnePlane * kInOnePlane * squares(2);
 }
 
 /// True if a sensor or target hangs on a pose that was measured, as of a flange.

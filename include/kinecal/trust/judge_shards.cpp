@@ -55,8 +55,7 @@ class ShardProcedure {
     judged.judgement = judge(calibration_.calibration, judged.result, judged.assessments,
                              options_.doubts, options_.refutable);
     judge_files(found_, calibration_.names, judged.judgement);
-    judged.unused =
-        judge_input(calibration_.calibration, options_.doubts, judged.judgement);
+    judged.unused = judge_input(calibration_.calibration, options_.doubts, judged.judgement);
     return judged;
   }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kinecal/geometry/median.hpp"
+#include "kinecal/solve/ldlt.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/stamp_jitter.ipp"
 
@@ -68,7 +69,8 @@ struct LagRows {
   rows.sigma = noise_across(rows);
   const Eigen::MatrixXd hessian =
       rows.fit.jacobian.transpose() * rows.fit.jacobian + rows.fit.prior_hessian;
-  rows.inverse = hessian.ldlt().solve(Eigen::MatrixXd::Identity(rows.fit.size(), rows.fit.size()));
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(rows.fit.size(), rows.fit.size());
+  rows.inverse = Ldlt(hessian).solve(identity);
   return rows;
 }
 

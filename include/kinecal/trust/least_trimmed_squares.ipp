@@ -10,7 +10,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,6 +17,7 @@
 #include <random>
 #include <vector>
 
+#include "kinecal/solve/ldlt.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/pose_groups.hpp"
 
@@ -67,7 +67,7 @@ class PoseSums {
       a += all_[*first].information;
       g += all_[*first].gradient;
     }
-    return -a.selfadjointView<Eigen::Lower>().ldlt().solve(g);
+    return -Ldlt(a).solve(g);
   }
   /// Mean of the squared rows of a pose after a step.
   [[nodiscard]] double distance(std::size_t pose, const Eigen::VectorXd& z) const {

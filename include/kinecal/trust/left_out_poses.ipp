@@ -7,11 +7,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "kinecal/solve/ldlt.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/pose_rows.ipp"
@@ -43,7 +43,7 @@ struct ColumnTest {
   sums = scale.asDiagonal() * sums * scale.asDiagonal();
   sums.diagonal().array() += kRidge;
   gradient = scale.cwiseProduct(gradient);
-  const auto by_own = sums.topLeftCorner(own, own).ldlt();
+  const Ldlt by_own(sums.topLeftCorner(own, own));
   for (Eigen::Index c = own + 1; c < all;
        ++c) {  // what the fit has: beside it, only residuals are left
     const Eigen::VectorXd cross = sums.col(c).head(own);
@@ -55,7 +55,7 @@ struct ColumnTest {
     gradient(c) = 0.0;
   }
   const Eigen::VectorXd of_first =
-      sums.ldlt().solve(Eigen::VectorXd::Unit(all, own));  // column of the inverse
+      Ldlt(sums).solve(Eigen::VectorXd(Eigen::VectorXd::Unit(all, own)));  // column of the inverse
   auto by_pose = blocks_by_pose(fit, poses);
   std::erase_if(by_pose, [&](const std::vector<std::size_t>& blocks) {
     return std::all_of(blocks.begin(), blocks.end(), [&](std::size_t b) {
@@ -79,7 +79,7 @@ struct ColumnTest {
       effect += (of * of_first).cwiseAbs2().dot(loss);
     }
     const auto at = static_cast<Eigen::Index>(pose);
-    changes(at) = -others.ldlt().solve(of_others)(own);
+    changes(at) = -Ldlt(others).solve(of_others)(own);
     effects(at) = effect;
   }
   const double variance = (n - 1.0) / n * (changes.array() - changes.mean()).square().sum();

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/noise.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "kinecal/geometry/median.hpp"
+#include "kinecal/solve/eigenpairs.hpp"
 
 namespace kinecal {
 
@@ -53,8 +53,8 @@ BlockNoise detail::block_noise(const Term& term, std::int64_t features, double s
 void detail::set_directions(const Eigen::MatrixXd& residuals, BlockNoise& noise) {
   constexpr Eigen::Index kFew = 20;
   if (noise.components < 2 || noise.components > 3 || residuals.cols() < kFew) return;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> scatter(residuals * residuals.transpose());
-  const Eigen::MatrixXd along = scatter.eigenvectors().transpose() * residuals;
+  const Eigenpairs scatter = eigenpairs(residuals * residuals.transpose());
+  const Eigen::MatrixXd along = scatter.vectors.transpose() * residuals;
   const auto sigma = [&](Eigen::Index row) {
     std::vector<double> distances(static_cast<std::size_t>(along.cols()));
     for (Eigen::Index i = 0; i < along.cols(); ++i) {

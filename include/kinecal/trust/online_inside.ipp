@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "kinecal/solve/determined_spectrum.ipp"
+#include "kinecal/solve/ldlt.hpp"
 #include "kinecal/trust/measured_numbers.hpp"
 #include "kinecal/trust/online.hpp"
 #include "kinecal/trust/pose_variance.ipp"
@@ -130,7 +130,7 @@ inline double OnlineCalibration::Inside::innovation(AnyEvaluator& evaluator, int
   const Eigen::MatrixXd covariance = noise2 * detail::Spectrum(hessian).pseudo_inverse();
   Eigen::MatrixXd expected = last.jacobian * covariance * last.jacobian.transpose();
   expected.diagonal().array() += noise2;
-  return last.residual.dot(expected.ldlt().solve(last.residual)) / rows;
+  return last.residual.dot(detail::Ldlt(expected).solve(last.residual)) / rows;
 }
 
 namespace detail {

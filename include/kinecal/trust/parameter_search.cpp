@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/parameter_search.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "kinecal/solve/ldlt.hpp"
 #include "kinecal/trust/f_distribution.hpp"
 
 namespace kinecal {
@@ -23,10 +23,10 @@ constexpr double kOwnShare = 1e-4;
 [[nodiscard]] Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& squared,
                                              const Eigen::VectorXd& scale) {
   const Eigen::VectorXd by = scale.cwiseInverse();
-  const Eigen::LDLT<Eigen::MatrixXd> solver(by.asDiagonal() * squared * by.asDiagonal());
-  if (solver.info() != Eigen::Success || solver.vectorD().minCoeff() <= 0.1 * kOwnShare) return {};
-  const Eigen::MatrixXd inverse =
-      solver.solve(Eigen::MatrixXd::Identity(squared.rows(), squared.cols()));
+  const Ldlt ldlt(by.asDiagonal() * squared * by.asDiagonal());
+  if (ldlt.least_pivot() <= 0.1 * kOwnShare) return {};
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(squared.rows(), squared.cols());
+  const Eigen::MatrixXd inverse = ldlt.solve(identity);
   return by.asDiagonal() * inverse * by.asDiagonal();
 }
 

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <span>
 #include <vector>
 
+#include "kinecal/solve/eigenpairs.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/pose_groups.hpp"
 
@@ -45,17 +45,16 @@ struct SharedDirections {
   /// @param a  (rows x any)
   explicit SharedDirections(const Eigen::MatrixXd& a) : axes(a.rows(), 0) {
     if (a.cols() == 0) return;  // no joint moves the sensor
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a.transpose() * a);
+    const Eigenpairs pairs = eigenpairs(a.transpose() * a);
     constexpr double kRounding = 1e-9;
-    const Eigen::VectorXd& all = solver.eigenvalues();
+    const Eigen::VectorXd& all = pairs.values;
     Eigen::Index rank = 0;
     while (rank < std::min(a.rows(), all.size()) &&
            all(all.size() - 1 - rank) > kRounding * all(all.size() - 1)) {
       ++rank;
     }
     sizes = all.tail(rank);
-    axes =
-        a * solver.eigenvectors().rightCols(rank) * sizes.cwiseSqrt().cwiseInverse().asDiagonal();
+    axes = a * pairs.vectors.rightCols(rank) * sizes.cwiseSqrt().cwiseInverse().asDiagonal();
   }
   /// (I + t^2 A A^T)^-1/2 times some columns.
   template <class Columns>

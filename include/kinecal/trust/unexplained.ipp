@@ -3,11 +3,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "kinecal/solve/eigenpairs.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/plausible_change.ipp"
 
@@ -39,17 +39,16 @@ struct Fall {
 [[nodiscard]] inline Fall fall_of(const AddedColumns& added, const Eigen::VectorXd& scale,
                                   const Eigen::MatrixXd& inverse) {
   constexpr double kOwn = 1e-3;  // least share of a column's effect that others cannot explain
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(
+  const Eigenpairs own = eigenpairs(
       scale.asDiagonal() * (added.squared - added.cross * inverse * added.cross.transpose()) *
       scale.asDiagonal());
-  const Eigen::VectorXd gradient =
-      own.eigenvectors().transpose() * scale.cwiseProduct(added.gradient);
+  const Eigen::VectorXd gradient = own.vectors.transpose() * scale.cwiseProduct(added.gradient);
   Fall fall{0.0, Eigen::VectorXd::Zero(gradient.size()), {}};
   for (Eigen::Index i = 0; i < gradient.size(); ++i) {
-    const double value = own.eigenvalues()(i);
+    const double value = own.values(i);
     if (value <= kOwn) continue;
     fall.squares += gradient(i) * gradient(i) / value;
-    fall.change -= scale.cwiseProduct(own.eigenvectors().col(i)) * (gradient(i) / value);
+    fall.change -= scale.cwiseProduct(own.vectors.col(i)) * (gradient(i) / value);
   }
   fall.others = -inverse * (added.cross.transpose() * fall.change);
   return fall;

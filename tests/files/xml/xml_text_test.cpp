@@ -31,7 +31,9 @@ std::string nested(int times) {
 /// Where others read it by recursion.
 TEST(XmlText, NestedTooDeeplyIsAnErrorWithTheLine) {
   EXPECT_NO_THROW(detail::XmlText(nested(150), "r.urdf", {"a URDF", "robot"}));
-  EXPECT_EQ(test::error_of([] { detail::XmlText(nested(60000), "r.urdf", {"a URDF", "robot"}); }),
+  EXPECT_EQ(test::error_of([] {
+              detail::XmlText(nested(60000), "r.urdf", {"a URDF", "robot"});
+            }),
             "r.urdf:201: elements are nested too deeply");
 }
 
