@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -296,26 +295,24 @@ TEST_F(CaptureProgram, ResumesAFileThatWasCutOff) {
 
 TEST_F(CaptureProgram, CtrlCEndsARobotThatHangs) {
   simulate(2);
-  std::ofstream(folder_ / "hang.sh") << "echo $$ > child; while true; do sleep 1; done\n";
-  const auto start = std::chrono::steady_clock::now();
+  std::ofstream(folder_ / "hang.sh")
+      << "read request; echo $$ > child; while true; do sleep 1; done\n";
   const Outcome ended =
       run("bash -c 'set -m; " + kProgram +
           " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
           "--robot \"pipe:exec sh hang.sh\" -o s.yaml & "
-          "for i in $(seq 100); do test -s child && break; sleep 0.1; done; "
-          "sleep 0.2; kill -INT $!; wait $!'");
+          "until test -s child; do sleep 0.1; done; kill -INT $!; wait $!'");
   EXPECT_EQ(ended.code, 130) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("error: interrupted\n"));
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(15));
   EXPECT_NE(run("kill -0 $(cat child)").code, 0) << "the child is still there";
 }
 
 TEST_F(CaptureProgram, CtrlCEndsWaitingForAPerson) {
   simulate(2);
-  const Outcome ended = run("bash -c 'set -m; sleep 20 | " + kProgram +
+  const Outcome ended = run("bash -c 'set -m; sleep 600 | " + kProgram +
                             " capture sim/capture.yaml --urdf sim/robot.urdf --manual "
                             "--robot simulated:sim/scene.yaml -o s.yaml > said & "
-                            "for i in $(seq 100); do grep -q Enter said && break; sleep 0.1; done; "
+                            "until grep -q Enter said; do sleep 0.1; done; "
                             "sleep 0.2; kill -INT -- -$!; wait $!'");
   EXPECT_EQ(ended.code, 130) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("error: interrupted\n"));
