@@ -2,6 +2,7 @@
 //
 //   photographs FOLDER COLUMNS ROWS
 //
+// Exit code 1 if kinecal finds fewer boards, or its corners are off by more than half a pixel.
 // Both sets calibrate the same camera in the same way, with OpenCV's calibrateCamera(): five coefficients of
 // distortion, the corners that both find.  So the error that is left is the corners' own.
 // OpenCV's own photographs are in Debian's opencv-doc: examples/data, left01.jpg to right14.jpg, 9 x 6 corners.
@@ -36,7 +37,8 @@ struct Sightings {
   }
 
   /// Prints the distances between corners and their projections, pixels.
-  void print(cv::Size image) const {
+  /// @returns  their median
+  [[nodiscard]] double print(cv::Size image) const {
     cv::Mat camera, distortion;
     std::vector<cv::Mat> turns, places;
     cv::calibrateCamera(board, corners, image, camera, distortion, turns, places);
@@ -55,6 +57,7 @@ struct Sightings {
     std::printf("%-24s %5d %8zu %8.3f %8.3f %8.3f\n", name.c_str(), views, count,
                 distances[count / 2], std::sqrt(squares / static_cast<double>(count)),
                 distances.back());
+    return distances[count / 2];
   }
 };
 
@@ -77,7 +80,8 @@ cv::Point2f nearest_to(cv::Point2f corner, const Corners& all) {
   });
 }
 
-void compare(const std::string& folder, int columns, int rows) {
+/// @returns  whether kinecal finds all boards that OpenCV finds, and their corners
+[[nodiscard]] bool compare(const std::string& folder, int columns, int rows) {
   std::vector<std::filesystem::path> files;
   for (const auto& file : std::filesystem::directory_iterator(folder)) files.push_back(file.path());
   std::sort(files.begin(), files.end());
@@ -109,8 +113,10 @@ void compare(const std::string& folder, int columns, int rows) {
   }
   std::printf("%zu photographs; error after the same calibration, pixels\n", files.size());
   std::printf("%-24s %5s %8s %8s %8s %8s\n", "", "views", "corners", "median", "RMS", "largest");
-  own.print(size);
-  other.print(size);
+  constexpr double kFound = 0.5;  // pixels
+  const bool is_found = own.print(size) < kFound;
+  (void)other.print(size);
+  return is_found && own.views >= other.views;
 }
 
 }  // namespace
@@ -121,7 +127,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    compare(argv[1], std::stoi(argv[2]), std::stoi(argv[3]));
+    return compare(argv[1], std::stoi(argv[2]), std::stoi(argv[3])) ? 0 : 1;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "error: %s\n", e.what());
     return 1;

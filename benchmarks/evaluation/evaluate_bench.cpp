@@ -94,12 +94,31 @@ std::vector<Vector3<Wide>> wide_residuals(const Problem& problem, const Sample& 
   return residuals;
 }
 
+/// Largest difference of a derivative by wide jets from the problem's own.
+double largest_difference(const Work& work, std::span<const Wide> jets) {
+  double largest = 0.0;
+  (void)kinecal::evaluate(
+      work.problem, work.values, &work.free, [&](int, int sample, const TermResiduals& out) {
+        const auto wide =
+            wide_residuals(work.problem, work.samples[static_cast<std::size_t>(sample)], jets);
+        for (Eigen::Index row = 0; row < out.residual.size(); ++row) {
+          const Wide& jet = wide[static_cast<std::size_t>(row / 3)](row % 3);
+          const double off = (jet.v.transpose() - out.jacobian.row(row)).cwiseAbs().maxCoeff();
+          largest = std::max(largest, off);
+        }
+      });
+  return largest;
+}
+
 /// The control: the same residuals, differentiated by one wide jet through the whole walk.
 void BM_residuals_and_jacobian_wide_jets(benchmark::State& state) {
   const Work work(static_cast<int>(state.range(0)));
   std::vector<Wide> jets;
   for (int i = 0; i < kParameters; ++i)
-    jets.emplace_back(work.values[static_cast<std::size_t>(i)], i);
+    jets.emplace_back(work.values.at(static_cast<std::size_t>(i)), i);
+  if (work.free.size() != kParameters || largest_difference(work, jets) > 1e-11) {
+    state.SkipWithError("the control differs");
+  }
   for (auto _ : state) {
     for (const Sample& sample : work.samples) {
       auto residuals = wide_residuals(work.problem, sample, jets);
@@ -112,6 +131,14 @@ BENCHMARK(BM_residuals_and_jacobian_wide_jets)->Arg(100);
 
 void BM_normal_equations(benchmark::State& state) {
   const Work work(static_cast<int>(state.range(0)));
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(kParameters, kParameters);
+  (void)kinecal::evaluate(work.problem, work.values, &work.free,
+                          [&](int, int, const TermResiduals& out) {
+                            hessian += out.jacobian.transpose() * out.jacobian;
+                          });
+  if (!normal_equations(work.problem, work.values, &work.free).hessian.isApprox(hessian, 1e-12)) {
+    state.SkipWithError("the sum differs from that of dense Jacobians");
+  }
   for (auto _ : state) {
     NormalEquations sum = normal_equations(work.problem, work.values, &work.free);
     benchmark::DoNotOptimize(sum.hessian.data());

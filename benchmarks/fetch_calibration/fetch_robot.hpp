@@ -6,6 +6,7 @@
 #pragma once
 
 #include <set>
+#include <span>
 
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
@@ -14,7 +15,9 @@
 
 namespace kinecal::bench {
 
-inline constexpr int kParameters = 26;
+/// Eight joint offsets, a depth camera without its polynomial, two frames.
+inline constexpr int kParameters = 8 + static_cast<int>(DepthCamera::kWithoutPolynomial) + 2 * 6;
+static_assert(kParameters == 26);
 inline constexpr int kLeds = 4;
 inline constexpr int kRows = 3 * kLeds;  ///< residuals of one sample
 
@@ -47,7 +50,8 @@ inline const std::set<std::string> kFreeFrames = {"head_camera_rgb_joint", "head
     table.add({.name = joint});
   }
   const std::string camera = camera_mount().parameter_prefix();
-  add_parameters(table, camera, DepthCamera::kParameters);
+  add_parameters(table, camera,
+                 std::span(DepthCamera::kParameters).first<DepthCamera::kWithoutPolynomial>());
   for (const char* frame : {"head_camera_rgb_joint", "head_pan_joint"}) {
     for (std::size_t axis = 0; axis < 6; ++axis) {
       table.add({.name = parameter_name(frame, kFrameAxes[axis]), .unit = axis < 3 ? "m" : "rad"});

@@ -73,12 +73,32 @@ void BM_pose_walk(benchmark::State& state) {
 }
 BENCHMARK(BM_pose_walk);
 
+/// How fast a joint moves the tip, by central differences of the control: metres per unit.
+Vector3<double> tip_velocity(Work work, int joint) {
+  constexpr double kStep = 1e-5;
+  double& position = work.motions[static_cast<std::size_t>(joint)].position;
+  position += kStep;
+  const Vector3<double> ahead = by_hand(work).translation();
+  position -= 2.0 * kStep;
+  return (ahead - by_hand(work).translation()) / (2.0 * kStep);
+}
+
 void BM_twists_walk(benchmark::State& state) {
   Work work;
   std::vector<JointIndices> columns(work.chain.joints.size());
   for (std::size_t i = 0; i < columns.size(); ++i) columns[i].offset = static_cast<int>(i);
   ChainTwists<double> twists;
-  twist_columns(work.chain, columns).resize(twists);
+  const TwistColumns joints = twist_columns(work.chain, columns);
+  joints.resize(twists);
+  TwistWalker<double> once{columns, twists};
+  walk_once(work, once);
+  const Vector3<double> tip = by_hand(work).translation();
+  for (std::size_t k = 0; k < joints.rotational.size(); ++k) {
+    const Vector3<double> velocity = twists.rotational[k].velocity(tip);
+    if ((velocity - tip_velocity(work, joints.rotational[k])).norm() > 1e-8) {
+      state.SkipWithError("a twist disagrees with the control");
+    }
+  }
   for (auto _ : state) {
     benchmark::DoNotOptimize(work.motions.data());
     TwistWalker<double> walker{columns, twists};
