@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kinecal/files/messages/make.ipp"
+#include "kinecal/files/messages/message_fields.ipp"
 #include "support/bridge_server.hpp"
 #include "support/error_of.hpp"
 

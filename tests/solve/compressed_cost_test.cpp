@@ -82,6 +82,26 @@ TEST(CompressedCost, IsFiniteWhereTheHessianIsSingular) {
   EXPECT_TRUE(compressed.jacobian.allFinite());
 }
 
+TEST(CompressedCost, ItsGaussNewtonStepSolvesTheNormalEquations) {
+  const Problem problem = noisy_problem({});
+  const FreeSet all = all_free(problem);
+  const auto x = test::random_values(problem.table(), 0.02, 5);
+  for (const bool singular : {false, true}) {
+    const std::vector<int> some = {1, 2, 3, 4, 6, 13, 14, 15};  // joints and the camera's position
+    const FreeSet free = singular ? all : FreeSet(some, problem.table().size());
+    const NormalEquations normal = normal_equations(problem, x, &free);
+    const detail::EquivalentResidual at(normal);
+    const detail::GaussNewtonStep found = detail::gauss_newton_step(at);
+    const double promised = 0.5 * at.residual.head(free.size()).squaredNorm();
+    const double falls =
+        -normal.gradient.dot(found.step) - 0.5 * found.step.dot(normal.hessian * found.step);
+    constexpr double kRounding = 1e-6;
+    EXPECT_NEAR(falls + found.left, promised, kRounding * promised) << singular;
+    EXPECT_LE(found.left, (singular ? 1e-2 : 1e-6) * promised);
+    EXPECT_GE(found.left, 0.0);
+  }
+}
+
 /// The gradient of the cost with a loss, by central differences of the cost itself.
 TEST(CompressedCost, GradientWithALossIsThatOfTheRobustCost) {
   for (const LossType type : {LossType::huber, LossType::cauchy, LossType::tukey}) {

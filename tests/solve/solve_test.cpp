@@ -3,11 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "kinecal/errors.hpp"
 #include "kinecal/evaluation/problem.hpp"
 #include "kinecal/solve/calibrate.hpp"
+#include "kinecal/solve/solve_with.ipp"
 #include "support/fisheye.hpp"
 #include "support/scene.hpp"
 
@@ -305,6 +309,66 @@ TEST(Solve, GivesTheSameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(result.final_cost, of_one.final_cost) << threads << " threads";
     EXPECT_EQ(result.iterations, of_one.iterations) << threads << " threads";
   }
+}
+
+/// Counts the evaluations with derivatives of another evaluator.
+class CountingEvaluator final : public AnyEvaluator {
+ public:
+  CountingEvaluator(std::unique_ptr<AnyEvaluator> all, int& count)
+      : all_(std::move(all)), count_(count) {}
+
+  [[nodiscard]] const AnyProblem& problem() const override { return all_->problem(); }
+  [[nodiscard]] const FreeSet& free() const override { return all_->free(); }
+  std::optional<UndefinedResidual> evaluate(ParameterValues values, bool derivatives,
+                                            const RowVisitor& visit, Linearization at) override {
+    return all_->evaluate(values, derivatives, visit, at);
+  }
+  [[nodiscard]] NormalEquations normal_equations(ParameterValues values, bool derivatives,
+                                                 Losses losses) override {
+    count_ += derivatives ? 1 : 0;
+    return all_->normal_equations(values, derivatives, losses);
+  }
+
+ private:
+  std::unique_ptr<AnyEvaluator> all_;
+  int& count_;
+};
+
+/// What the step before the last and the linear model say of the end holds there.
+TEST(Solve, TheLastStepNeedsNoDerivativesAndEndsAtTheMinimum) {
+  const std::vector<Sample> samples = noisy_samples(30, 1e-3);
+  int without = 0;
+  for (const LossType type : {LossType::none, LossType::huber}) {
+    Problem problem = test::scene_problem();
+    TermOptions term;
+    term.loss = {type, 0.002};
+    problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, term);
+    for (const Sample& sample : samples) problem.add_sample(sample);
+    const FreeSet free = free_of(problem.table(), kObservable);
+    for (const double tolerance : {1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) {
+      SolveOptions options;
+      options.function_tolerance = tolerance;
+      int derivatives = 0;
+      const auto evaluator_of = [&](const FreeSet& columns) -> std::unique_ptr<AnyEvaluator> {
+        return std::make_unique<CountingEvaluator>(problem.evaluator(columns, 1), derivatives);
+      };
+      StepResult counts;
+      counts.num_residuals = problem.num_residuals();
+      counts.num_parameters = free.size();
+      Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+      const StepResult result = detail::solve_with(evaluator_of, free, values, options, counts);
+      ASSERT_TRUE(result.converged) << result.termination;
+      if (derivatives != result.evaluations - 1) continue;  // it ended otherwise
+      ++without;
+      constexpr double kRounding = 1e-12;  // of sums, with derivatives and without
+      const NormalEquations end = normal_equations(problem, span_of(values), &free);
+      EXPECT_EQ(result.final_cost, result.costs.back());
+      EXPECT_NEAR(result.final_cost, end.cost, kRounding * end.cost);
+      const Eigen::VectorXd promised = detail::EquivalentResidual(end).residual.head(free.size());
+      EXPECT_LE(0.5 * promised.squaredNorm(), tolerance * end.cost) << tolerance;
+    }
+  }
+  EXPECT_GT(without, 0);
 }
 
 /// Solves with at most so many iterations.

@@ -43,6 +43,15 @@ struct EquivalentResidual {
   explicit EquivalentResidual(const NormalEquations& normal);
 };
 
+/// A Gauss-Newton step.
+struct GaussNewtonStep {
+  Eigen::VectorXd step;  ///< (parameters)
+  double left = 0.0;     ///< decrease of the cost that the linear model still promises after it
+};
+
+/// The Gauss-Newton step of an equivalent residual.  It does not move along directions without curvature.
+[[nodiscard]] GaussNewtonStep gauss_newton_step(const EquivalentResidual& at);
+
 /// The whole problem as one Ceres cost function over the free parameters.
 ///
 /// Ceres asks for the cost of a step first, and for the Jacobian if it accepts the step, as it
@@ -69,6 +78,11 @@ class CompressedCost final : public ceres::CostFunction {
   /// The decrease of the cost that a Gauss-Newton step predicts where the Jacobian was last
   /// evaluated:  half the squared Newton decrement.
   [[nodiscard]] double promised_decrease() const { return promised_decrease_; }
+  /// The Gauss-Newton step from where the samples were last evaluated.
+  [[nodiscard]] GaussNewtonStep gauss_newton() const { return gauss_newton_step(*last_); }
+  /// The cost, without derivatives.  Not finite where a residual is undefined.
+  /// @param x  (parameters) the free ones
+  [[nodiscard]] double cost_at(const Eigen::VectorXd& x) const;
   /// How often all samples were evaluated.
   [[nodiscard]] int evaluations() const { return evaluations_; }
 

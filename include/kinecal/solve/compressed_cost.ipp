@@ -64,6 +64,19 @@ KINECAL_INLINE EquivalentResidual::EquivalentResidual(const NormalEquations& nor
   residual(n) = std::sqrt(std::max(0.0, 2.0 * normal.cost - residual.head(n).squaredNorm()));
 }
 
+KINECAL_INLINE GaussNewtonStep gauss_newton_step(const EquivalentResidual& at) {
+  const Eigen::Index n = at.jacobian.cols();
+  const auto rows = at.jacobian.topRows(n);
+  const auto residual = at.residual.head(n);
+  const Eigen::VectorXd scale = rows.colwise().norm().transpose().unaryExpr(
+      [](double length) { return length > 0.0 ? length : 1.0; });
+  const Eigen::MatrixXd scaled = rows * scale.cwiseInverse().asDiagonal();
+  Eigen::MatrixXd hessian = scaled.transpose() * scaled;
+  hessian.diagonal().array() += 10.0 * kNoCurvature;
+  const Eigen::VectorXd step = hessian.ldlt().solve(-(scaled.transpose() * residual));
+  return {step.cwiseQuotient(scale), 0.5 * (residual + scaled * step).squaredNorm()};
+}
+
 KINECAL_INLINE CompressedCost::CompressedCost(AnyEvaluator& evaluator, Eigen::VectorXd values,
                                               Losses losses, Blocks blocks)
     : evaluator_(evaluator),
@@ -79,6 +92,15 @@ KINECAL_INLINE CompressedCost::CompressedCost(AnyEvaluator& evaluator, Eigen::Ve
   for (const std::vector<int>& columns : blocks_) {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(columns.size()));
   }
+}
+
+KINECAL_INLINE double CompressedCost::cost_at(const Eigen::VectorXd& x) const {
+  Eigen::VectorXd values = values_;
+  values(free_.parameters()) = x;
+  ++evaluations_;
+  return evaluator_
+      .normal_equations({values.data(), static_cast<std::size_t>(values.size())}, false, losses_)
+      .cost;
 }
 
 KINECAL_INLINE bool CompressedCost::Evaluate(double const* const* parameters, double* residuals,

@@ -28,7 +28,7 @@ enum class CostForm { compressed, stacked };
 struct SolveOptions {
   int max_num_iterations = 1000;  ///< the step does not converge if it needs more
   /// Stops when an iteration lowers the cost by less than this fraction, or a Gauss-Newton step
-  /// predicts less.  The default is small: iterations are cheap, and costs are compared to many
+  /// predicts less, here or after one more step.  The default is small: iterations are cheap, and costs are compared to many
   /// digits.
   double function_tolerance = 1e-14;
   CostForm form = CostForm::compressed;  ///< how Ceres receives the samples
