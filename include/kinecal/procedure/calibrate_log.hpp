@@ -1,6 +1,6 @@
 // The procedure of calibrate_robot.hpp for a log: recordings in many files that need not fit in memory.
 //
-// Judged on a draw of it: up to some thousand samples, evenly from all files (log_draw.hpp), decide what a setup leaves open,
+// Judged on a draw of it: up to some thousand samples, evenly from all files, decide what a setup leaves open,
 // where the solution starts, which causes, patterns, drifts and bad captures there are, and the error on held-out poses.
 // Solved on everything: solution, +- and noise are sums over the samples of all files that the draw's rule does not
 // leave out.  A log that the draw holds whole is calibrated at once.
