@@ -174,6 +174,7 @@ std::string json_report(const Findings& findings) {
       {"reasons", findings.judgement.reasons},
       {"samples", findings.used_count()},
       {"drawn", findings.drawn},
+      {"unused", findings.unused},
       {"would_help", findings.helps},
       {"how_fast", findings.speeds},
       {"search", json_list(findings.search.steps, searched)},
