@@ -62,7 +62,7 @@ struct CalibrationOptions {
   Search search = Search::if_open;
   bool geometry_only = false;  ///< a search frees no joint models, which a URDF cannot hold
   int draw = 3000;             ///< of calibrate_log(): samples on which a log is judged
-  Progress progress = {};      ///< called in each iteration
+  Progress progress = {};      ///< called in each iteration; what it throws ends the calibration
 };
 
 /// A setup that is ready to be solved, and what was found in it.
