@@ -95,8 +95,9 @@ TEST(CompressedCost, ItsGaussNewtonStepSolvesTheNormalEquations) {
     const double promised = 0.5 * at.residual.head(free.size()).squaredNorm();
     const double falls =
         -normal.gradient.dot(found.step) - 0.5 * found.step.dot(normal.hessian * found.step);
-    constexpr double kRounding = 1e-6;
-    EXPECT_NEAR(falls + found.left, promised, kRounding * promised) << singular;
+    // The equivalent residual leaves out directions almost without curvature, the Hessian has them.
+    const double rounding = singular ? 1e-3 : 1e-6;
+    EXPECT_NEAR(falls + found.left, promised, rounding * promised) << singular;
     EXPECT_LE(found.left, (singular ? 1e-2 : 1e-6) * promised);
     EXPECT_GE(found.left, 0.0);
   }
