@@ -6,6 +6,7 @@
 #include "kinecal/errors.hpp"
 #include "support/oracle.hpp"
 #include "support/static_robot.hpp"
+#include "support/unknown_poses.hpp"
 
 namespace kinecal {
 namespace {
@@ -16,9 +17,9 @@ using testing::HasSubstr;
 template <FixedString Tip>
 using FromBase = Chain<StaticRobot, "base", Tip>;
 using Elbow = JointOffset<"elbow">;
-using Mount = FrameOffset<"mount", Axes::xyz>;
+using Moved = FrameOffset<"mount", Axes::xyz>;
 using Tracked = Crate<Chain3d<"arm", FromBase<"tip">>, Chain3d<"tracker", FromBase<"base">>, Elbow,
-                      Mount, Block<"tracking", PointToPoint, "arm", "tracker">>;
+                      Moved, Block<"tracking", PointToPoint, "arm", "tracker">>;
 
 TEST(CalibrateAndJudge, GivesACrateValuesWithTheirDeviationsAndTheVerdict) {
   constexpr double kElbow = 0.02, kNoise = 1e-4;
@@ -51,7 +52,7 @@ TEST(CalibrateAndJudge, GivesACrateValuesWithTheirDeviationsAndTheVerdict) {
   EXPECT_GT(deviation, 0.0);
   EXPECT_LT(deviation, 1e-3);
   EXPECT_NEAR(judged.value<Elbow>(), kElbow, 4.0 * deviation);
-  const Vector3<double> of_mount = judged.deviation<Mount>();
+  const Vector3<double> of_mount = judged.deviation<Moved>();
   EXPECT_TRUE((of_mount.array() > 0.0).all());
   ASSERT_EQ(judged.left_out.size(), 1u);
   EXPECT_EQ(judged.left_out[0].number, 12);

@@ -92,7 +92,7 @@ TEST(JudgeInput, CountsSamplesThatNoErrorBlockCompares) {
 TEST(JudgeInput, CountsCopiesUnlessADoubtNamesThem) {
   test::NoisyScene scene(40);
   for (std::size_t i = 20; i < 25; ++i) scene.samples[i] = scene.samples[i - 20];
-  camera_of(scene.samples[20]).features[0].point.x() += 1e-8;  // printed with fewer digits
+  camera_of(scene.samples[20]).features[0].point.x() += 1e-11;  // printed with fewer digits
   const std::string copies = "5 of 40 samples (the first is " + scene.samples[20].source +
                              ") are copies of others; copies count twice and say nothing new; "
                              "remove them";
