@@ -48,15 +48,6 @@ struct Said {
   bool operator==(const Said&) const = default;
 };
 
-/// A reason without the place of a sample, which differs between files.
-std::string without_places(std::string reason, const std::vector<Sample>& samples) {
-  for (const Sample& sample : samples) {
-    const std::size_t at = reason.find(sample.source);
-    if (at != std::string::npos) reason.replace(at, sample.source.size(), "PLACE");
-  }
-  return reason;
-}
-
 Said said(const CalibratedRobot& calibrated) {
   const Judgement& judgement = calibrated.judgement;
   return {std::string(to_string(judgement.verdict)),
