@@ -26,9 +26,11 @@ struct Division {
             {S(1.0), S(0.0), S(2.0 * d[0] * x)},
             {S(0.0), S(1.0), S(2.0 * d[0] * y)}};
   }
+  /// Up to 45 degrees, where image() is defined for k below 1/4.
   template <class S>
   static auto sees(const Vector3<S>& p) {
-    return p.z() > S(0.0);
+    using std::sqrt;
+    return p.z() > sqrt(S(p.x() * p.x() + p.y() * p.y()));
   }
 };
 static_assert(LensModel<Division> && Sensor<LensCamera<Division>>);
