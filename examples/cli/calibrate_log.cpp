@@ -109,14 +109,14 @@ class LogRun {
     CalibrationOptions calibrating = calibration_options(options_);
     calibrating.solving.threads = options_.threads;
     calibrating.draw = options_.draw;
-    PreparedLog log;
-    processes_.alike([&] {
-      log = prepare_log(std::move(input_.setup), recorded_log(), calibrating);
-      print_or_throw(log.draw.diagnostics);
-      check_robot_files(options_, log.draw.robot, input_.texts);
-    });
-    samples_ = log.samples;
     try {
+      PreparedLog log;
+      processes_.alike([&] {
+        log = prepare_log(std::move(input_.setup), recorded_log(), calibrating);
+        print_or_throw(log.draw.diagnostics);
+        check_robot_files(options_, log.draw.robot, input_.texts);
+      });
+      samples_ = log.samples;
       return kinecal::calibrate_log(std::move(log), calibrating);
     } catch (const InputError&) {
       if (processes_.size() == 1) checkpoints_->forget_new();
