@@ -158,7 +158,7 @@ TEST_F(CamerasLog, AnotherImageSizeInALaterFileIsAnError) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
-/// Three corners in each view of a file say nothing of where the board was.
+/// Three corners in each view of a file say nothing of where the board was: as `calibrate`, the log leaves them out.
 TEST_F(CamerasLog, ALaterFileWithoutFourCornersIsNamed) {
   std::string text = wide_camera_samples(kAll, 12, 15);
   for (std::size_t at = 0; (at = text.find("features:\n", at)) != std::string::npos; ++at) {
@@ -168,12 +168,9 @@ TEST_F(CamerasLog, ALaterFileWithoutFourCornersIsNamed) {
     text.erase(from, to - from);
   }
   write("b.yaml", text);
-  const test::Outcome none = log("given.yaml", "a.yaml b.yaml c.yaml", "out");
-  EXPECT_EQ(none.code, 1);
-  EXPECT_THAT(none.err,
-              HasSubstr("error: b.yaml:1: no camera shows in any sample of this file where "
-                        "the target was, by four corners or more"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  const test::Outcome none = log("given.yaml", "a.yaml b.yaml c.yaml", "without");
+  EXPECT_EQ(none.code, 0) << none.out << none.err;
+  EXPECT_THAT(none.err, HasSubstr("note: b.yaml:1: no camera shows where the target was"));
   write("b.yaml", text + wide_camera_samples(kAll, 14, 15));
   const test::Outcome some = log("given.yaml", "a.yaml b.yaml c.yaml", "out");
   EXPECT_EQ(some.code, 0) << some.out << some.err;
