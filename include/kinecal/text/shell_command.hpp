@@ -41,6 +41,7 @@ class ShellCommand {
   /// it: --hold=-c.
   ShellCommand& add_option(const std::string& option, const std::vector<std::string>& values);
 
+  /// True if it has no words.
   [[nodiscard]] bool empty() const { return words_.empty(); }
   /// True if a word is in the command.
   [[nodiscard]] bool has(const std::string& word) const {
