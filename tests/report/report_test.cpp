@@ -205,9 +205,11 @@ TEST(NextStep, GivesNamesAndFoldersAsWordsWhateverTheyAre) {
     all.call = called(name);
     std::vector<int>& hold = all.assessments[0].observability.hold;
     hold = {all.result.table.add({.name = name + " x"})};
+    // A folder of this name looks like the option, which is not given twice.
+    const std::string force = name == "--force" ? "calibrate" : "--force";
     EXPECT_THAT(pasted(all),
-                testing::IsSupersetOf({name, (name.starts_with("-") ? "--hold=" : "") + name + " x",
-                                       std::string("--force")}));
+                testing::IsSupersetOf(
+                    {name, (name.starts_with("-") ? "--hold=" : "") + name + " x", force}));
     EXPECT_THAT(observability_text("s", all.assessments[0].observability, all.result.table),
                 HasSubstr(": " + ShellCommand().add_option("--hold", {name + " x"}).str() + "\n"));
     all.judgement = {};

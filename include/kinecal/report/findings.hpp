@@ -36,8 +36,8 @@ struct Findings : JudgedResult {
 
   /// Number of samples that the result uses: of a log those of all files, not of the draw.
   [[nodiscard]] std::int64_t used_count() const {
-    return result.steps.empty() ? static_cast<std::int64_t>(sources.size())
-                                : result.steps.front().samples;
+    return drawn > 0 && !result.steps.empty() ? result.steps.front().samples
+                                              : static_cast<std::int64_t>(sources.size());
   }
 };
 
