@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <span>
 #include <utility>
@@ -126,17 +127,20 @@ void take_own_poses(const AnyProblem& problem, std::vector<Sample>& samples) {
   return colon == std::string::npos ? "" : sample.source.substr(0, colon);
 }
 
-/// Judges files that do not go with the others.
+/// Judges files that do not go with the others.  A few samples scatter too much to say so of their file.
 void judge_files(const Calibration& calibration, std::span<const Sample> samples,
                  JudgedResult& judged) {
+  constexpr int kFewest = 10;  // samples of a file
   if (!judged.result.converged) return;
+  std::map<std::string, int> counts, numbers;
+  for (const Sample& sample : samples) ++counts[file_of(sample)];
   std::vector<std::string> names;
-  std::vector<int> files;
-  for (const Sample& sample : samples) {
-    const std::string file = file_of(sample);
-    if (names.empty() || names.back() != file) names.push_back(file);
-    files.push_back(static_cast<int>(names.size()) - 1);
+  for (const auto& [file, count] : counts) {
+    numbers[file] = count < kFewest ? -1 : static_cast<int>(std::ssize(names));
+    if (count >= kFewest) names.push_back(file);
   }
+  std::vector<int> files;
+  for (const Sample& sample : samples) files.push_back(numbers[file_of(sample)]);
   const Eigen::VectorXd values = judged.result.table.values();
   judge_misfits(misfits_of(*calibration.steps.back().problem,
                            {values.data(), static_cast<std::size_t>(values.size())}, files),

@@ -1,4 +1,5 @@
-// The whole procedure of a calibration: solve, estimate the noise, leave out bad samples, assess, judge.
+// The numbers of a calibration: solve, estimate the noise, leave out bad samples, assess, judge.  What a robot and its
+// configuration show beyond them is added by procedure/calibrate_robot.hpp.
 //
 //   Calibration calibration = make_calibration(HandEye(), samples);      // or assemble(config, ...)
 //   const JudgedResult judged = calibrate_and_judge(calibration, samples);

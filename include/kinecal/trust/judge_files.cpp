@@ -31,7 +31,9 @@ std::vector<double> misfits_of(const AnyProblem& problem, ParameterValues values
                                std::span<const int> files) {
   std::vector<double> squares, rows;
   const auto visit = [&](int t, int sample, const TermResiduals& of) {
-    const auto file = static_cast<std::size_t>(files[static_cast<std::size_t>(sample)]);
+    const int number = files[static_cast<std::size_t>(sample)];
+    if (number < 0) return;
+    const auto file = static_cast<std::size_t>(number);
     if (file >= squares.size()) squares.resize(file + 1, 0.0), rows.resize(file + 1, 0.0);
     const double weight = problem.term(t).weight;
     squares[file] += (weight * of.factor.cwiseProduct(of.residual)).squaredNorm();

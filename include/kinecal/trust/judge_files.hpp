@@ -13,7 +13,7 @@ namespace kinecal::detail {
 
 /// RMS of the weighted residuals of each file.
 /// @param values  of all parameters of the table
-/// @param files   of each sample of the problem: the number of its file, from 0
+/// @param files   of each sample of the problem: the number of its file, from 0; -1: of none
 [[nodiscard]] std::vector<double> misfits_of(const AnyProblem& problem, ParameterValues values,
                                              std::span<const int> files);
 
