@@ -242,7 +242,7 @@ int report(const LogOptions& options, LogRun& run, CalibratedRobot& calibrated) 
   const RobotFiles others =
       robot_files(options, robot, run.texts(), findings.result.table, all.front().content);
   OutputFolder folder(options.output);
-  write(folder, with_copies(options, run.texts(), std::move(all)));
+  write(folder, with_copies(options, run.texts(), std::move(all)), options.force);
   write(others);
   run.forget_checkpoints();
   return kDone;

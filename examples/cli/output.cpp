@@ -5,8 +5,8 @@
 
 namespace kinecal::cli {
 
-void write(OutputFolder& folder, const std::vector<OutputFile>& files) {
-  folder.write(files);
+void write(OutputFolder& folder, const std::vector<OutputFile>& files, bool force) {
+  folder.write(files, force ? Existing::replaced : Existing::kept);
   for (const OutputFile& file : files) {
     say("wrote {}\n", (folder.path() / file.name).string());
   }

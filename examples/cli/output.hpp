@@ -22,6 +22,7 @@ namespace kinecal::cli {
                                                   std::vector<OutputFile> files);
 
 /// Writes all files or none, and prints their names.
-void write(OutputFolder& folder, const std::vector<OutputFile>& files);
+/// @param force  replaces files that have appeared meanwhile
+void write(OutputFolder& folder, const std::vector<OutputFile>& files, bool force);
 
 }  // namespace kinecal::cli
