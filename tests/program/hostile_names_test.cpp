@@ -53,14 +53,13 @@ class Hostile : public test::ProgramTest {
     write("arm.urdf", with(urdf, "\"tool\"", "\"" + escaped + " link\""));
     const auto word = [&](const char* what) { return detail::name_to_yaml(name + what); };
     write("c.yaml",
-          "base_link: base_link\ncalibration_steps: [" + word(" step") + "]\n" + word(" step") +
-              ":\n  models:\n  - {name: " + word(" sensor") +
-              ", type: chain3d, frame: " + word(" link") +
-              "}\n  - {name: tracker, type: chain3d, frame: base_link}\n  free_params: [" +
+          "base_link: base_link\ncal_steps:\n  " + word(" step") + ":\n    models:\n    - {name: " +
+              word(" sensor") + ", type: chain3d, frame: " + word(" link") +
+              "}\n    - {name: tracker, type: chain3d, frame: base_link}\n    free_params: [" +
               word("") +
-              ", lift, elbow, roll, flex]\n  free_frames:\n  - {name: " + word(" frame") +
-              ", x: true, y: true, z: true, roll: true, pitch: true, yaw: true}\n  error_blocks:\n "
-              " - {name: " +
+              ", lift, elbow, roll, flex]\n    free_frames:\n    - {name: " + word(" frame") +
+              ", x: true, y: true, z: true, roll: true, pitch: true, yaw: true}\n"
+              "    error_blocks:\n    - {name: " +
               word("") + ", type: chain3d_to_chain3d, model_a: " + word(" sensor") +
               ", model_b: tracker}\n");
     std::vector<Sample> samples = test::arm_samples(parse_urdf(test::kArmUrdf, "arm.urdf"), 30);
