@@ -168,7 +168,8 @@ target_link_libraries(kinecal_headers INTERFACE Eigen3::Eigen Threads::Threads)
 set(KINECAL_CORE_FOLDERS text geometry kinematics parameters samples sensors errors problem evaluation
                          crate testing)
 kinecal_add_library(core UNIT 16
-  ALONE evaluation/problem.ipp  # all blocks and sensors: it takes longest
+  ALONE evaluation/problem.ipp evaluation/built_in_sensors.ipp evaluation/built_in_blocks.ipp
+        evaluation/built_in_pose_blocks.ipp  # these take longest
   FOLDERS ${KINECAL_CORE_FOLDERS} core linkage
   LINK Eigen3::Eigen Threads::Threads)
 kinecal_add_library(capture UNIT 30

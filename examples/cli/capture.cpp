@@ -141,7 +141,7 @@ class Follower {
 
   /// Asks the whole calibration, and prints why it does not agree.
   void confirm() {
-    const std::string why = why_go_on(*until_, calibrate_all(), ahead_);
+    const std::string why = why_go_on(*until_, *follower_, ahead_);
     enough_ = why.empty();
     if (!enough_) say("  not enough yet: {}\n", why);
   }

@@ -14,6 +14,7 @@
 
 #include "commands.hpp"
 #include "describe.hpp"
+#include "kinecal/text/name_list.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/text/shell_command.hpp"
@@ -37,6 +38,23 @@ void add_urdf(CLI::App& command, std::string& urdf) {
       ->type_name("FILE");
 }
 
+/// An option that takes names, also several in one word: a,b.
+CLI::Option* add_names(CLI::App& command, const std::string& flags, std::vector<std::string>& names,
+                       const std::string& help) {
+  return command
+      .add_option_function<std::vector<std::string>>(
+          flags,
+          [&names](const std::vector<std::string>& lists) {
+            for (const std::string& list : lists) {
+              for (std::string& name : kinecal::names_of_list(list)) {
+                names.push_back(std::move(name));
+              }
+            }
+          },
+          help)
+      ->type_name("NAME");
+}
+
 CLI::Option* add_samples(CLI::App& command, std::vector<std::string>& samples) {
   return command
       .add_option("--samples", samples,
@@ -55,11 +73,8 @@ CLI::Option* add_input(CLI::App& command, InputOptions& options) {
       ->type_name("FILE");
   CLI::Option* samples = add_samples(command, options.samples);
   add_cameras(command, options.cameras);
-  command
-      .add_option("--hold", options.hold,
-                  "parameters that keep their initial values, though the configuration frees them")
-      ->delimiter(',')
-      ->type_name("NAME");
+  add_names(command, "--hold", options.hold,
+            "parameters that keep their initial values, though the configuration frees them");
   command
       .add_option_function<std::string>(
           "--samples-recorded",
@@ -241,11 +256,8 @@ void add_identify(CLI::App& command, IdentifyOptions& options) {
       ->type_name("FILE");
   add_samples(command, options.samples)->required();
   add_cameras(command, options.cameras);
-  command
-      .add_option("--hold", options.hold,
-                  "parameters, frames or candidates that keep their initial values")
-      ->delimiter(',')
-      ->type_name("NAME");
+  add_names(command, "--hold", options.hold,
+            "parameters, frames or candidates that keep their initial values");
   command.add_flag("--geometry-only", options.geometry_only,
                    "without joint models and lags, which a URDF cannot hold");
   command.add_option("-o,--output", options.output, "the configuration to write")
@@ -276,14 +288,11 @@ void add_init(CLI::App& command, InitOptions& options) {
                       "is: world_... on the hand, else beside the robot")
           ->excludes(urdf)
           ->type_name("FILE");
-  command
-      .add_option("--cameras", options.cameras,
-                  "instead of a robot: names of cameras that see a board which somebody holds; "
-                  "intrinsics, lenses and where they stand are found from photographs alone")
-      ->delimiter(',')
+  add_names(command, "--cameras", options.cameras,
+            "instead of a robot: names of cameras that see a board which somebody holds; "
+            "intrinsics, lenses and where they stand are found from photographs alone")
       ->excludes(urdf)
-      ->excludes(poses)
-      ->type_name("NAME");
+      ->excludes(poses);
   command
       .add_option("--form", options.form,
                   "what the columns of --poses are: quaternion_xyzw, quaternion_wxyz, "
@@ -479,12 +488,11 @@ void add_choice(CLI::App& command, StudyFiles& files, int& candidates, std::stri
 }
 
 CLI::Option* add_tell_apart(CLI::App& command, StudyFiles& files) {
-  return command
-      .add_option("--tell-apart", files.tell_apart,
-                  "two candidates of 'kinecal identify' that explain the same: the poses that show "
-                  "which one is wrong; with --samples of a tracker, new poses between those of the "
-                  "samples")
-      ->delimiter(',')
+  return add_names(
+             command, "--tell-apart", files.tell_apart,
+             "two candidates of 'kinecal identify' that explain the same: the poses that show "
+             "which one is wrong; with --samples of a tracker, new poses between those of the "
+             "samples")
       ->type_name("A,B");
 }
 
@@ -565,10 +573,8 @@ void add_detect(CLI::App& command, DetectOptions& options) {
               "or MCAP; each standstill of the robot gives a sample; may be repeated")
           ->allow_extra_args(false)
           ->type_name("FILE");
-  command
-      .add_option("--restless", options.restless,
-                  "joints that need not stand still in recordings, such as that of a scanner")
-      ->delimiter(',')
+  add_names(command, "--restless", options.restless,
+            "joints that need not stand still in recordings, such as that of a scanner")
       ->allow_extra_args(false)
       ->type_name("JOINT");
   command

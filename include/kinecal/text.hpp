@@ -8,6 +8,7 @@
 #include "kinecal/text/fixed_string.hpp"
 #include "kinecal/text/frame_name.hpp"
 #include "kinecal/text/image_region.hpp"
+#include "kinecal/text/name_list.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/text/reading.hpp"

@@ -15,6 +15,7 @@
 #include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/files/xml/xml_edit.ipp"
 #include "kinecal/files/yaml/yaml_text.hpp"
+#include "kinecal/text/name_list.hpp"
 #include "support/arm_scene.hpp"
 #include "support/run_program.hpp"
 #include "support/shell_words.hpp"
@@ -126,8 +127,10 @@ TEST_P(HostileNames, AreNamesInTheNextCommandWhichWorksWhenItIsPasted) {
   ASSERT_NE(at, std::string::npos) << outcome.out;
   const std::string command = outcome.out.substr(at + 3, outcome.out.find('\n', at + 3) - at - 3);
   expect_words(command);
-  EXPECT_THAT(test::paste(command).words, Contains(HasSubstr(name_)).Times(testing::Ge(3)))
-      << "files and --hold";
+  EXPECT_THAT(test::paste(command).words, Contains(HasSubstr(name_)).Times(testing::Ge(2)))
+      << "files";
+  EXPECT_THAT(test::paste(command).words, Contains(HasSubstr(list_entry(name_) + " frame")))
+      << "--hold";
   write("paste.sh",
         "kinecal() { " + quoted(test::kinecal_program()) + " \"$@\"; }\n" + command + "\n");
   const test::Outcome again = run("sh paste.sh < /dev/null");
@@ -172,10 +175,9 @@ TEST_P(HostileNames, AreNamesInEveryFile) {
   EXPECT_TRUE(urdf.child("robot").find_child_by_attribute("joint", "name", name_.c_str()));
 }
 
-/// Each means something to several readers.
+/// Each means something to several readers; $( and ${ are of xacro, and refused in a URDF.
 INSTANTIATE_TEST_SUITE_P(Names, HostileNames,
-                         testing::Values("`touch PWNED` $(touch PWNED) ${HOME}",
-                                         "'; touch PWNED; '",
+                         testing::Values("`touch PWNED` $HOME", "'; touch PWNED; '",
                                          "\"; touch PWNED > x & \" onload=\"alert(1)&amp;",
                                          "</script><script>alert(1)</script>",
                                          "=HYPERLINK(1), \"a\"", "-rf --force",

@@ -117,7 +117,7 @@ Outcome capture(std::uint64_t seed, const std::vector<CapturePose>& all) {
       for (auto i = static_cast<std::size_t>(outcome.poses); i < poses.size(); ++i) {
         ahead.push_back(at_pose(poses[i], sample));
       }
-      enough = why_go_on(wanted, follower.calibrate_all(), ahead).empty();
+      enough = why_go_on(wanted, follower, ahead).empty();
     }
   });
   outcome.minutes = static_cast<double>((robot.now() - start).count()) / kMinute;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kinecal/text/name_list.hpp"
 #include "support/hostile_names.hpp"
 #include "support/shell_words.hpp"
 
@@ -48,8 +49,19 @@ TEST(ShellCommand, JoinsValuesThatLookLikeOptionsToTheirOption) {
   EXPECT_EQ(ShellCommand().add_option("--hold", {"a", "-b", "c", "d"}).str(),
             "--hold a --hold=-b --hold c d");
   EXPECT_TRUE(ShellCommand().add_option("--hold", {}).empty());
+  EXPECT_EQ(ShellCommand().add_names("--hold", {"-a,b", "c"}).str(), "'--hold=-a\\,b' --hold c");
   EXPECT_EQ(shell_file("-a.yaml"), "./-a.yaml");
   EXPECT_EQ(shell_file("a.yaml"), "a.yaml");
+}
+
+TEST(NameList, GivesNamesAsTheyWere) {
+  for (const std::string& name : test::kHostileNames) {
+    EXPECT_THAT(names_of_list(list_entry(name)), ElementsAreArray({name}));
+    EXPECT_THAT(names_of_list("a," + list_entry(name) + ",,b"),
+                ElementsAreArray({std::string("a"), name, std::string("b")}));
+  }
+  EXPECT_THAT(names_of_list("C:\\x,"), ElementsAreArray({"C:\\x"})) << "as somebody types it";
+  EXPECT_THAT(names_of_list(","), testing::IsEmpty());
 }
 
 TEST(ShellCommand, KnowsItsWords) {

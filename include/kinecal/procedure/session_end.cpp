@@ -112,6 +112,12 @@ namespace {
                      where);
 }
 
+/// Why a result is not usable; empty if it is.
+[[nodiscard]] std::string not_usable(const Judgement& judgement) {
+  if (judgement.verdict != Grade::do_not_use) return {};
+  return "the verdict is 'do not use': " + judgement.reasons.front();
+}
+
 /// Why samples are too few; empty if they are not.
 [[nodiscard]] std::string too_few(const SessionResult& result) {
   constexpr double kToSpare = 0.5;  // of the parameters: what shows the errors of joints
@@ -148,9 +154,7 @@ std::string why_go_on(const Accuracy& wanted, const SessionResult& result,
                       std::span<const Sample> ahead) {
   const Assessment& step = result.step;  // clang 14 captures no structured binding
   if (std::string few = detail::too_few(result); !few.empty()) return few;
-  if (result.judgement.verdict == Grade::do_not_use) {
-    return "the verdict is 'do not use': " + result.judgement.reasons.front();
-  }
+  if (std::string why = detail::not_usable(result.judgement); !why.empty()) return why;
   if (!step.pose) return "no error block compares two frames";
   const auto on_robot = [](const std::string& name, const std::string& link) {
     return FrameOnRobot{link, name == link ? "" : name};
@@ -175,18 +179,23 @@ std::string why_go_on(const Accuracy& wanted, const SessionResult& result,
   return why.empty() ? detail::still_open(result, ahead) : why;
 }
 
-std::string why_go_on(const Accuracy& wanted, const CalibratedRobot& all,
+std::string why_go_on(const Accuracy& wanted, const SessionFollower& session,
                       std::span<const Sample> ahead) {
-  const JudgedResult& judged = all;
-  if (judged.assessments.empty()) return judged.result.termination;
-  const Eigen::VectorXd values = judged.result.table.values();
-  return why_go_on(wanted,
-                   {*all.setup.calibration.steps.back().problem,
-                    {values.data(), static_cast<std::size_t>(values.size())},
-                    judged.assessments.back(),
-                    judged.judgement,
-                    all.samples},
-                   ahead);
+  return detail::as_input_error([&]() -> std::string {
+    CalibratedRobot all = detail::solve_and_judge(prepare(session.setup()), {});
+    if (all.assessments.empty()) return all.result.termination;
+    const Eigen::VectorXd values = all.result.table.values();
+    std::string why = why_go_on(wanted,
+                                {*all.setup.calibration.steps.back().problem,
+                                 {values.data(), static_cast<std::size_t>(values.size())},
+                                 all.assessments.back(),
+                                 all.judgement,
+                                 all.samples},
+                                ahead);
+    if (!why.empty()) return why;
+    detail::explain(all);
+    return detail::not_usable(all.judgement);
+  });
 }
 
 }  // namespace kinecal

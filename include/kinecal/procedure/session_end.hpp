@@ -36,8 +36,9 @@ struct SessionResult {
 [[nodiscard]] std::string why_go_on(const Accuracy& wanted, const SessionResult& result,
                                     std::span<const Sample> ahead);
 
-/// The same of a session's calibration.
-[[nodiscard]] std::string why_go_on(const Accuracy& wanted, const CalibratedRobot& all,
+/// The same of a session.  Looks for causes only where nothing else is a reason to go on.
+/// @throws InputError  if its samples do not suffice
+[[nodiscard]] std::string why_go_on(const Accuracy& wanted, const SessionFollower& session,
                                     std::span<const Sample> ahead);
 
 }  // namespace kinecal

@@ -109,9 +109,8 @@ FollowedState SessionFollower::add(const Sample& captured, std::span<const Sampl
   return followed;
 }
 
-CalibratedRobot SessionFollower::calibrate_all() const {
-  return calibrate_robot(CalibrationSetup{
-      .robot = robot_, .config = config_, .samples = samples_, .urdf_text = urdf_text_});
+CalibrationSetup SessionFollower::setup() const {
+  return {.robot = robot_, .config = config_, .samples = samples_, .urdf_text = urdf_text_};
 }
 
 Sample at_pose(const CapturePose& pose, const Sample& sample) {

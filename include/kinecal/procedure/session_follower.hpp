@@ -50,9 +50,11 @@ class SessionFollower {
   /// @param ahead  remaining poses, where the pose is wanted as well
   FollowedState add(const Sample& captured, std::span<const Sample> ahead = {});
 
+  /// The robot, its configuration and all samples so far.
+  [[nodiscard]] CalibrationSetup setup() const;
   /// Calibrates and judges all samples so far.
-  /// @throws InputError, std::invalid_argument  if they do not suffice
-  [[nodiscard]] CalibratedRobot calibrate_all() const;
+  /// @throws InputError  if they do not suffice
+  [[nodiscard]] CalibratedRobot calibrate_all() const { return calibrate_robot(setup()); }
 
   /// The frame whose pose is meant, and the one in which it is meant; empty before it is known.
   [[nodiscard]] std::pair<std::string, std::string> frames() const;

@@ -87,7 +87,7 @@ namespace kinecal::detail {
   }
   html += "</ul>";
   if (!data.hold.empty()) {
-    const std::string hold = ShellCommand().add_option("--hold", data.hold).str();
+    const std::string hold = ShellCommand().add_names("--hold", data.hold).str();
     html += "<p>Hold these to determine the others: <code>" + html_sentence(hold, true) +
             "</code>. Poses that move the joints between them apart, or another target, determine "
             "them as well.</p>";

@@ -88,7 +88,7 @@ namespace {
   return "hold " + why + ":\n  " +
          (findings.call.command.empty()
               ? fmt::format("{}", fmt::join(names, " "))
-              : again(findings, ShellCommand().add_option("--hold", names)));
+              : again(findings, ShellCommand().add_names("--hold", names)));
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ std::string observability_text(const std::string& step, const Observability& obs
   if (!observability.hold.empty()) {
     std::vector<std::string> names;
     for (const int parameter : observability.hold) names.push_back(table[parameter].name);
-    text += "  to determine the others, hold: " + ShellCommand().add_option("--hold", names).str() +
+    text += "  to determine the others, hold: " + ShellCommand().add_names("--hold", names).str() +
             "\n";
   }
   text += "  no residual changes along:\n";

@@ -40,6 +40,8 @@ class ShellCommand {
   /// Appends an option and its values: --hold a b; nothing without values.  A value that looks like an option is joined to
   /// it: --hold=-c.
   ShellCommand& add_option(const std::string& option, const std::vector<std::string>& values);
+  /// As add_option(), for an option whose values are lists of names: name_list.hpp.
+  ShellCommand& add_names(const std::string& option, const std::vector<std::string>& names);
 
   /// True if it has no words.
   [[nodiscard]] bool empty() const { return words_.empty(); }

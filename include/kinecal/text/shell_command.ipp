@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kinecal/text/characters.hpp"
+#include "kinecal/text/name_list.hpp"
 #include "kinecal/text/shell_command.hpp"
 
 namespace kinecal {
@@ -58,6 +59,13 @@ KINECAL_INLINE ShellCommand& ShellCommand::add_option(const std::string& option,
     is_open = !looks_like_option;
   }
   return *this;
+}
+
+KINECAL_INLINE ShellCommand& ShellCommand::add_names(const std::string& option,
+                                                     const std::vector<std::string>& names) {
+  std::vector<std::string> entries;
+  for (const std::string& name : names) entries.push_back(list_entry(name));
+  return add_option(option, entries);
 }
 
 KINECAL_INLINE std::string ShellCommand::str() const {

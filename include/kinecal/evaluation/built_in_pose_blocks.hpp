@@ -1,0 +1,18 @@
+// The terms of the built-in error blocks of poses and lines of sight, evaluated in packets: a unit of the library.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/errors/built_in_block.hpp"
+#include "kinecal/evaluation/block_term.hpp"
+
+#ifndef KINECAL_HEADER_ONLY
+namespace kinecal::detail {
+
+extern template class LocalSums<Packet>;
+extern template class PointWrenches<Packet>;
+extern template class FeatureWrenches<Packet>;
+extern template class BlockTerm<PoseToPose, Packet>;
+extern template class BlockTerm<RayToRay, Packet>;
+
+}  // namespace kinecal::detail
+#endif

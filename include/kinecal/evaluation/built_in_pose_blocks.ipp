@@ -1,0 +1,14 @@
+// What built_in_pose_blocks.hpp declares, compiled.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/evaluation/built_in_pose_blocks.hpp"
+
+#ifndef KINECAL_HEADER_ONLY
+namespace kinecal::detail {
+
+template class BlockTerm<PoseToPose, Packet>;
+template class BlockTerm<RayToRay, Packet>;
+
+}  // namespace kinecal::detail
+#endif
