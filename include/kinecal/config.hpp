@@ -27,6 +27,7 @@
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/doubts/xacro_left.hpp"
 #include "kinecal/config/hold_parameters.hpp"
+#include "kinecal/config/loss_names.hpp"
 #include "kinecal/config/own_frames.hpp"
 #include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/config/read_config.hpp"

@@ -8,17 +8,12 @@
 #include <string>
 
 #include "kinecal/config/config.hpp"
+#include "kinecal/config/loss_names.hpp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {
-
-[[nodiscard]] inline LossType loss_type(const std::string& name) {
-  if (name == "huber") return LossType::huber;
-  if (name == "cauchy") return LossType::cauchy;
-  return name == "tukey" ? LossType::tukey : LossType::none;
-}
 
 /// Numbers of samples in which a block's first model observes something: alone, and together with
 /// another model of the step.

@@ -6,20 +6,6 @@
 
 namespace kinecal::detail {
 
-std::string loss_name(LossType type) {
-  switch (type) {
-    case LossType::huber:
-      return "huber";
-    case LossType::cauchy:
-      return "cauchy";
-    case LossType::tukey:
-      return "tukey";
-    case LossType::none:
-      break;
-  }
-  return "none";
-}
-
 std::map<std::string, double> default_numbers(const std::string& type, double scale) {
   std::map<std::string, double> numbers;
   const BlockEntry* entry = registry().block(type);

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "kinecal/config/config.hpp"
+#include "kinecal/config/loss_names.hpp"
 #include "kinecal/config/register.hpp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/crate/crate.hpp"
@@ -21,8 +22,6 @@ namespace kinecal {
 
 namespace detail {
 
-/// `type:` of a loss.
-[[nodiscard]] std::string loss_name(LossType type);
 /// The numbers of an error block's type at their defaults, with its scale; empty for an unknown type.
 [[nodiscard]] std::map<std::string, double> default_numbers(const std::string& type, double scale);
 /// The free axes of a frame, and initial values that are not zero.
