@@ -268,4 +268,21 @@ Calibration assemble(const Config& given, const Robot& of_urdf, std::span<const 
   return calibration;
 }
 
+Calibration with_samples(const Calibration& assembled, std::span<const Sample> samples) {
+  Calibration calibration{assembled.table, {}, assembled.begin};
+  for (const CalibrationStep& step : assembled.steps) {
+    CalibrationStep& other = calibration.steps.emplace_back(
+        CalibrationStep{step.name, step.max_num_iterations, step.problem->without_samples(),
+                        step.free, step.assignments, step.unknown_frames});
+    for (const Sample& sample : samples) other.problem->add_sample(sample);
+    if (!step.excerpt) continue;
+    other.excerpt = step.excerpt->without_samples();
+    other.of_excerpt = step.of_excerpt;
+    for (const int i : step.of_excerpt) {
+      other.excerpt->add_sample(samples[static_cast<std::size_t>(i)]);
+    }
+  }
+  return calibration;
+}
+
 }  // namespace kinecal

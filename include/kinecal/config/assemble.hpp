@@ -17,4 +17,10 @@ namespace kinecal {
 [[nodiscard]] Calibration assemble(const Config& config, const Robot& robot,
                                    std::span<const Sample> samples, Diagnostics& diagnostics);
 
+/// A calibration of other samples, assembled already: the same sensors in the same order, other numbers.
+/// @param samples  as many as those of `assembled`
+/// @throws SampleError  naming the sample and what is missing or wrong in it
+[[nodiscard]] Calibration with_samples(const Calibration& assembled,
+                                       std::span<const Sample> samples);
+
 }  // namespace kinecal

@@ -93,14 +93,11 @@ struct FreeLength {
 }
 
 /// The factor of a model's points that undoes nearly all changes of lengths; nullopt if none does.
-[[nodiscard]] inline std::optional<Cause> absorbed_scale(const CauseSolver& solver,
-                                                         const std::vector<Sample>& samples,
-                                                         const std::string& model,
-                                                         const SolvedSamples& now,
-                                                         const std::vector<FreeLength>& lengths) {
+[[nodiscard]] inline std::optional<Cause> absorbed_scale(
+    const CauseSolver& solver, const Calibration& calibration, const std::vector<Sample>& samples,
+    const std::string& model, const SolvedSamples& now, const std::vector<FreeLength>& lengths) {
   constexpr double kStep = 0.005;
-  const auto scaled =
-      solve_samples(solver, solver.config, with_scaled(samples, model, 1.0 + kStep));
+  const auto scaled = solved_with(solver, calibration, with_scaled(samples, model, 1.0 + kStep));
   if (!scaled) return std::nullopt;
   constexpr double kBuilt = 1.5e-3, kWide = 3.0;  // metres; deviations
   double before = 0.0, slope = 0.0, curvature = 0.0, least_moved = 0.0;
@@ -122,7 +119,7 @@ struct FreeLength {
     return std::nullopt;
   }
   constexpr double kAsGood = 1.3;
-  const auto then = solve_samples(solver, solver.config, with_scaled(samples, model, 1.0 + s));
+  const auto then = solved_with(solver, calibration, with_scaled(samples, model, 1.0 + s));
   if (!then || then->cost > kAsGood * now.cost) return std::nullopt;
   return Cause{
       before - gain,

@@ -34,10 +34,10 @@ struct CauseSolver {
   const ParameterTable* from = nullptr;  ///< where it starts, instead of the initial values
 };
 
-/// Assembles and solves; nullopt if these samples are unusable, or if the fit is not finite.
-[[nodiscard]] inline std::optional<SolvedSamples> solve_samples(const CauseSolver& solver,
-                                                                const Config& config,
-                                                                std::span<const Sample> samples) {
+/// Assembles; nullopt if these samples are unusable.
+[[nodiscard]] inline std::optional<Calibration> assembled(const CauseSolver& solver,
+                                                          const Config& config,
+                                                          std::span<const Sample> samples) {
   constexpr int kEnough = 100;  // iterations; what fits is found in far fewer
   Diagnostics quiet;
   Calibration calibration = assemble(config, solver.robot, samples, quiet);
@@ -51,10 +51,27 @@ struct CauseSolver {
     calibration.begin.push_back((*solver.from)[calibration.table[i].name].value);
   }
   if (!quiet.errors.empty() || calibration.steps.empty()) return std::nullopt;
+  return calibration;
+}
+
+/// Solves; nullopt if the fit is not finite.
+[[nodiscard]] inline std::optional<SolvedSamples> solved(const CauseSolver& solver,
+                                                         const Calibration& calibration) {
   const CalibrationResult result = solver.solve(calibration);
   if (result.steps.empty() || !std::isfinite(result.steps.back().final_cost)) return std::nullopt;
   return SolvedSamples{result.steps.back().final_cost, result.blocks, result.table,
                        robot_size(*calibration.steps.back().problem)};
+}
+
+/// Solves with other numbers in the samples; nullopt if they are unusable, or if the fit is not finite.
+[[nodiscard]] inline std::optional<SolvedSamples> solved_with(const CauseSolver& solver,
+                                                              const Calibration& calibration,
+                                                              std::span<const Sample> samples) {
+  try {
+    return solved(solver, with_samples(calibration, samples));
+  } catch (const SampleError&) {
+    return std::nullopt;
+  }
 }
 
 /// True if the typical distances of all error blocks are below those of a result that is refused.

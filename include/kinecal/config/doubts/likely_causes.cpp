@@ -31,11 +31,12 @@ constexpr double kAlike = 1.5, kPartly = 100.0;
 /// The scale of a model's points that fits best: a board with larger squares than configured.  Fits
 /// parabolas through three costs, over the logarithm of the scale.
 [[nodiscard]] std::optional<Cause> scale_cause(const CauseSolver& solver,
+                                               const Calibration& calibration,
                                                const std::vector<Sample>& samples,
                                                const std::string& model, const SolvedSamples& now,
                                                double explains) {
   const auto fit = [&](double x) {
-    return solve_samples(solver, solver.config, with_scaled(samples, model, std::exp(x)));
+    return solved_with(solver, calibration, with_scaled(samples, model, std::exp(x)));
   };
   constexpr double kFirst = 0.1, kFurthest = 1.1, kEnough = 1e-3, kNothing = 1e-6;
   constexpr int kSteps = 8;
@@ -75,13 +76,14 @@ constexpr double kAlike = 1.5, kPartly = 100.0;
 
 /// The models whose points fit better at another scale.
 [[nodiscard]] std::vector<Cause> scale_causes(const CauseSolver& solver,
+                                              const Calibration& calibration,
                                               const std::vector<Sample>& samples,
                                               const SolvedSamples& now, double explains) {
   std::vector<Cause> found;
   const std::set<std::string> pixels = pixel_models(solver.config);
   for (const ModelConfig& model : models_of(solver.config)) {
     if (pixels.contains(model.name)) continue;
-    auto scaled = scale_cause(solver, samples, model.name, now, explains);
+    auto scaled = scale_cause(solver, calibration, samples, model.name, now, explains);
     if (scaled) found.push_back(*std::move(scaled));
   }
   return found;
@@ -93,16 +95,39 @@ constexpr double kAlike = 1.5, kPartly = 100.0;
                                                    const std::vector<FreeLength>& lengths) {
   const Config zeros = with_zeros_for_lengths(config, robot);
   const CauseSolver solver{zeros, robot, plain_calibrator()};
-  const auto now = solve_samples(solver, zeros, samples);
+  const std::optional<Calibration> calibration = assembled(solver, zeros, samples);
+  const auto now = calibration ? solved(solver, *calibration) : std::nullopt;
   if (!now) return {};
   std::vector<std::string> names;
   for (const FreeLength& length : lengths) names.push_back(length.name);
-  std::vector<Cause> found = scale_causes(solver, samples, *now, kExplainsScale);
+  std::vector<Cause> found = scale_causes(solver, *calibration, samples, *now, kExplainsScale);
   for (Cause& cause : found) {
     cause.sentence +=
         " with zeros in place of " + first_names(names) + ", which may have absorbed it";
   }
   return found;
+}
+
+/// Solves with a mistake undone.  Only what changes the configuration, or the number of samples, is assembled anew.
+/// @param calibration  of `some` of the samples; nullopt if it cannot be assembled
+[[nodiscard]] std::optional<SolvedSamples> solved_without(
+    const Hypothesis& hypothesis, const CauseSolver& solver,
+    const std::optional<Calibration>& calibration, std::span<const Sample> samples,
+    const std::vector<Sample>& some) {
+  std::vector<Sample> changed = some;
+  if (hypothesis.correct_all) {
+    changed.assign(samples.begin(), samples.end());
+    hypothesis.correct_all(changed);
+    changed = some_of(changed);
+  }
+  if (hypothesis.correct) std::for_each(changed.begin(), changed.end(), hypothesis.correct);
+  if (!hypothesis.correct_config && calibration && changed.size() == some.size()) {
+    return solved_with(solver, *calibration, changed);
+  }
+  Config config = solver.config;
+  if (hypothesis.correct_config) hypothesis.correct_config(config);
+  const auto other = assembled(solver, config, changed);
+  return other ? solved(solver, *other) : std::nullopt;
 }
 
 /// The sentences, lowest cost first; equal costs in the order of the hypotheses.  Drops causes that
@@ -130,22 +155,14 @@ std::vector<std::string> likely_causes(const Config& config, const Robot& robot,
                                        std::span<const Sample> samples, const Calibrator& solve) {
   const detail::CauseSolver solver{config, robot, solve ? solve : detail::plain_calibrator()};
   const std::vector<Sample> some = detail::some_of(samples);
-  const auto now = detail::solve_samples(solver, config, some);
+  const std::optional<Calibration> calibration = detail::assembled(solver, config, some);
+  const auto now = calibration ? detail::solved(solver, *calibration) : std::nullopt;
   std::vector<detail::Cause> found;
   std::vector<detail::Hypothesis> all =
       detail::hypotheses(config, detail::used_joints(config, robot, some));
   detail::add_pose_hypotheses(config, some, all);
   for (const detail::Hypothesis& hypothesis : all) {
-    std::vector<Sample> changed = some;
-    if (hypothesis.correct_all) {
-      changed.assign(samples.begin(), samples.end());
-      hypothesis.correct_all(changed);
-      changed = detail::some_of(changed);
-    }
-    Config changed_config = config;
-    if (hypothesis.correct) std::for_each(changed.begin(), changed.end(), hypothesis.correct);
-    if (hypothesis.correct_config) hypothesis.correct_config(changed_config);
-    const auto then = detail::solve_samples(solver, changed_config, changed);
+    const auto then = detail::solved_without(hypothesis, solver, calibration, samples, some);
     if (!then) continue;
     if (!now) {
       if (!detail::fits(*then)) continue;  // it can be solved, but is wrong, too
@@ -157,7 +174,8 @@ std::vector<std::string> likely_causes(const Config& config, const Robot& robot,
     found.push_back({cost, hypothesis.undone + ", " + detail::fall_of(*now, *then)});
   }
   if (now) {
-    for (detail::Cause& cause : detail::scale_causes(solver, some, *now, detail::kExplainsScale)) {
+    for (detail::Cause& cause :
+         detail::scale_causes(solver, *calibration, some, *now, detail::kExplainsScale)) {
       found.push_back(std::move(cause));
     }
   }
@@ -169,20 +187,21 @@ std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
                                       const ParameterTable& solution, const Assessment& last) {
   const detail::CauseSolver solver{config, robot, detail::plain_calibrator(), &solution};
   const std::vector<Sample> some = detail::some_of(samples);
-  const auto now = detail::solve_samples(solver, config, some);
+  const std::optional<Calibration> calibration = detail::assembled(solver, config, some);
+  const auto now = calibration ? detail::solved(solver, *calibration) : std::nullopt;
   const auto is_exact = [](const BlockStatistics& block) {
     return block.after.mean < 1e-6;  // metres or pixels: simulated without noise
   };
   if (!now || std::all_of(now->blocks.begin(), now->blocks.end(), is_exact)) return {};
   std::vector<detail::Cause> found =
-      detail::scale_causes(solver, some, *now, detail::kExplainsScale);
+      detail::scale_causes(solver, *calibration, some, *now, detail::kExplainsScale);
   if (!found.empty()) return detail::sentences(std::move(found));
   const std::vector<detail::FreeLength> lengths = detail::free_lengths(robot, solution, last);
   if (lengths.size() < 2) return {};
   const std::set<std::string> pixels = detail::pixel_models(config);
   for (const ModelConfig& model : detail::models_of(config)) {
     if (pixels.contains(model.name)) continue;
-    auto scaled = detail::absorbed_scale(solver, some, model.name, *now, lengths);
+    auto scaled = detail::absorbed_scale(solver, *calibration, some, model.name, *now, lengths);
     if (scaled) found.push_back(*std::move(scaled));
   }
   if (found.empty()) found = detail::scales_with_zeros(config, robot, some, lengths);
