@@ -175,12 +175,12 @@ kinecal_add_library(core UNIT 16
 kinecal_add_library(capture UNIT 30
   FOLDERS capture
   LINK kinecal_core)
-kinecal_add_library(solve UNIT 11
+kinecal_add_library(solve UNIT 8
   FOLDERS solve
   WARM trust
   LINK kinecal_core Ceres::ceres
   PRIVATE_LINK Boost::headers)
-kinecal_add_library(io UNIT 30
+kinecal_add_library(io UNIT 24
   WARM files  # readers of large recordings
   COLD study config robots report tools procedure
   LINK kinecal_capture kinecal_solve nlohmann_json::nlohmann_json

@@ -134,7 +134,9 @@ KINECAL_INLINE CalibrationResult calibrate(const Calibration& calibration, const
                                           step.unknown_frames, step.excerpt.get());
     if (solved.converged) {
       wrap_angles(*step.problem, step.free, values);
-      solved.final_cost = hold_undetermined(*step.problem, step.free, start, values);
+      if (solving.hold_undetermined) {
+        solved.final_cost = hold_undetermined(*step.problem, step.free, start, values);
+      }
     }
     if (!step.problem->own_poses().empty()) {
       step.problem->set_poses_of_samples(

@@ -34,6 +34,7 @@ struct SolveOptions {
   CostForm form = CostForm::compressed;  ///< how Ceres receives the samples
   int threads = 0;                       ///< zero: one per core; does not affect the result
   int random_starts = 0;                 ///< of calibrate(), besides the one given
+  bool hold_undetermined = true;  ///< of calibrate(): see settle.hpp; does not affect the cost
   /// Called after each iteration with its number and the current cost; a rejected step leaves the
   /// cost as it was.
   std::function<void(int iteration, double cost)> progress = {};

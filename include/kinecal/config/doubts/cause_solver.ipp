@@ -86,7 +86,9 @@ struct CauseSolver {
 }
 
 [[nodiscard]] inline Calibrator plain_calibrator() {
-  return [](const Calibration& calibration) { return calibrate(calibration); };
+  return [](const Calibration& calibration) {
+    return calibrate(calibration, {}, {.hold_undetermined = false});  // costs are compared
+  };
 }
 
 /// "the samples can be solved, and the mean residual of 'hand_eye' is 0.11 mm", for the first block.
