@@ -19,16 +19,16 @@ enum ExitCode { kDone = 0, kBadInput = 1, kNotUsable = 2, kInterrupted = 130 };
 
 /// What is calibrated, from which samples.
 struct InputOptions {
-  std::string urdf;                     ///< empty: the /robot_description of the samples' bag
-  std::string urdf_text = {};           ///< content of a URDF, if neither is there
-  std::string config;                   ///< file
-  std::string config_text = {};         ///< content of a configuration, if there is no file
-  std::vector<std::string> samples;     ///< files
-  std::vector<std::string> cameras;     ///< NAME=FILE, for samples without camera_info
-  std::vector<std::string> hold;        ///< parameters that are not calibrated
-  std::vector<int> exclude;             ///< samples to leave out, from 1
-  Recorded recorded = Recorded::after;  ///< the samples, and <calibration rising>
-  bool is_part = false;                 ///< there are more samples: these may be few
+  std::string urdf = {};                  ///< empty: the /robot_description of the samples' bag
+  std::string urdf_text = {};             ///< content of a URDF, if neither is there
+  std::string config = {};                ///< file
+  std::string config_text = {};           ///< content of a configuration, if there is no file
+  std::vector<std::string> samples = {};  ///< files
+  std::vector<std::string> cameras = {};  ///< NAME=FILE, for samples without camera_info
+  std::vector<std::string> hold = {};     ///< parameters that are not calibrated
+  std::vector<int> exclude = {};          ///< samples to leave out, from 1
+  Recorded recorded = Recorded::after;    ///< the samples, and <calibration rising>
+  bool is_part = false;                   ///< there are more samples: these may be few
   /// Unless it is an error, a configuration may be missing, and what is free is searched for: always if it is allowed,
   /// else if the configuration leaves it open.
   NothingFree nothing_free = NothingFree::is_error;

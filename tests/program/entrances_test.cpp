@@ -160,8 +160,9 @@ TEST_F(Entrances, SayTheSame) {
                    said_by([&] { return calibrate_robot(setup(wrong)); }));
       KINECAL_SAME(what + ", session", program, by_session(wrong));
       const bool is_drawn = wrong.urdf == right.urdf;  // the crate has the robot as it is drawn
-      if (is_drawn && right.name == "ur5")
+      if (is_drawn && right.name == "ur5") {
         KINECAL_SAME(what + ", crate", program, by_crate<Full>(wrong));
+      }
       if (is_drawn && right.name == "ur5_offsets") {
         KINECAL_SAME(what + ", crate", program, by_crate<Offsets>(wrong));
       }

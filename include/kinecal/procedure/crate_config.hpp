@@ -49,7 +49,9 @@ template <SensorPart P>
 template <ErrorBlock B>
 [[nodiscard]] BlockEntry entry_of_block(const B& block, const std::string& type) {
   const BlockEntry* known = registry().block(type);
-  BlockEntry entry = known != nullptr ? *known : BlockEntry{.type = type, .read_as = type};
+  BlockEntry entry;
+  entry.type = entry.read_as = type;
+  if (known != nullptr) entry = *known;
   if constexpr (requires { B::kUnit; }) entry.unit = B::kUnit;
   for (std::size_t i = entry.sensors.size(); i < kQuantities<B>.size(); ++i) {
     entry.sensors.push_back({{"model_" + std::to_string(i + 1)}, kQuantities<B>[i]});
