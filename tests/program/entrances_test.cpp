@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <regex>
 
 #include "kinecal/crate.hpp"
 #include "kinecal/errors.hpp"
@@ -48,10 +49,19 @@ struct Said {
   bool operator==(const Said&) const = default;
 };
 
+/// A reason without the places of samples, which are in other files; and without the numbers of a singular problem,
+/// which are those of rounding.
+std::string reason_of(const std::string& sentence) {
+  const std::string singular = " by more than is plausible";
+  const std::size_t at = sentence.find(singular);
+  if (at != std::string::npos) return sentence.substr(at + 1);
+  return std::regex_replace(sentence, std::regex("[^ ]+[.]yaml:[0-9]+"), "FILE");
+}
+
 Said said(const CalibratedRobot& calibrated) {
   const Judgement& judgement = calibrated.judgement;
   return {std::string(to_string(judgement.verdict)),
-          judgement.reasons.empty() ? "" : judgement.reasons.front()};
+          judgement.reasons.empty() ? "" : reason_of(judgement.reasons.front())};
 }
 
 /// What a calibration in this process says, or why it is refused.
@@ -97,7 +107,7 @@ class Entrances : public test::ProgramTest {
     if (!file) return {"refused", run.err.substr(0, run.err.find('\n'))};
     const nlohmann::json report = nlohmann::json::parse(file);
     const auto& reasons = report["reasons"];
-    return {report["verdict"], reasons.empty() ? "" : reasons[0].get<std::string>()};
+    return {report["verdict"], reasons.empty() ? "" : reason_of(reasons[0].get<std::string>())};
   }
   [[nodiscard]] Said by_program(const std::string& arguments) const {
     fs::remove(folder_ / "report.json");
