@@ -10,6 +10,7 @@
 #include "kinecal/files/results/standard_output.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/report/findings.hpp"
+#include "kinecal/text/name_list.hpp"
 #include "kinecal/tools/identify/tell_apart.hpp"
 #include "output_file.hpp"
 #include "report.hpp"
@@ -51,7 +52,8 @@ std::string deciding_command(const CalibratedRobot& found, const InputOptions& n
                  step.inseparable.end();
         });
     if (other == step.alike.end()) continue;
-    const std::string names = plain_name(step.freed) + "," + plain_name(*other);
+    const std::string names =
+        list_entry(plain_name(step.freed)) + "," + list_entry(plain_name(*other));
     InputOptions inputs = next;
     if (!sees_everywhere(found.robot_search->config))
       inputs.samples.clear();  // views are generated

@@ -161,5 +161,26 @@ TEST_F(Assemble, SamplesThatAreWrongAlikeAreOneError) {
                                 HasSubstr("(and in 2 more samples)"))));
 }
 
+TEST_F(Assemble, OtherSamplesOfWhatIsAssembledAreAsAssembledAnew) {
+  ASSERT_THAT(assembled().errors, IsEmpty());
+  const Calibration first = std::move(calibration_);
+  for (Sample& sample : scenario_.samples) sample.joint_positions.front() += 0.02;
+  ASSERT_THAT(assembled().errors, IsEmpty());
+  const Eigen::VectorXd expected = calibrate(calibration_).table.values();
+  EXPECT_EQ(calibrate(with_samples(first, scenario_.samples)).table.values(), expected);
+  EXPECT_NE(calibrate(first).table.values(), expected);
+  scenario_.samples.pop_back();
+  EXPECT_THROW((void)with_samples(first, scenario_.samples), std::invalid_argument);
+}
+
+TEST_F(Assemble, WhatIsUndeterminedDoesNotAffectTheCost) {
+  ASSERT_THAT(assembled().errors, IsEmpty());
+  for (Sample& sample : scenario_.samples) sample.joint_positions.front() += 0.02;
+  const Calibration moved = with_samples(calibration_, scenario_.samples);
+  const auto cost = [](const CalibrationResult& result) { return result.steps.back().final_cost; };
+  const double held = cost(calibrate(moved));
+  EXPECT_NEAR(cost(calibrate(moved, {}, {.hold_undetermined = false})), held, 1e-9 * held + 1e-15);
+}
+
 }  // namespace
 }  // namespace kinecal

@@ -271,6 +271,10 @@ Calibration assemble(const Config& given, const Robot& of_urdf, std::span<const 
 Calibration with_samples(const Calibration& assembled, std::span<const Sample> samples) {
   Calibration calibration{assembled.table, {}, assembled.begin};
   for (const CalibrationStep& step : assembled.steps) {
+    if (step.problem->num_samples() != std::ssize(samples)) {
+      throw std::invalid_argument(fmt::format("with_samples: {} samples in place of {}",
+                                              samples.size(), step.problem->num_samples()));
+    }
     CalibrationStep& other = calibration.steps.emplace_back(
         CalibrationStep{step.name, step.max_num_iterations, step.problem->without_samples(),
                         step.free, step.assignments, step.unknown_frames});

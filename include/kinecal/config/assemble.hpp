@@ -20,6 +20,7 @@ namespace kinecal {
 /// A calibration of other samples, assembled already: the same sensors in the same order, other numbers.
 /// @param samples  as many as those of `assembled`
 /// @throws SampleError  naming the sample and what is missing or wrong in it
+/// @throws std::invalid_argument  if they are not as many
 [[nodiscard]] Calibration with_samples(const Calibration& assembled,
                                        std::span<const Sample> samples);
 

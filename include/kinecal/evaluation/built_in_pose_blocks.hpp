@@ -3,14 +3,11 @@
 #pragma once
 
 #include "kinecal/errors/built_in_block.hpp"
-#include "kinecal/evaluation/block_term.hpp"
+#include "kinecal/evaluation/problem.hpp"
 
 #ifndef KINECAL_HEADER_ONLY
 namespace kinecal::detail {
 
-extern template class LocalSums<Packet>;
-extern template class PointWrenches<Packet>;
-extern template class FeatureWrenches<Packet>;
 extern template class BlockTerm<PoseToPose, Packet>;
 extern template class BlockTerm<RayToRay, Packet>;
 

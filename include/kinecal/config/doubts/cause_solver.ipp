@@ -87,7 +87,8 @@ struct CauseSolver {
 
 [[nodiscard]] inline Calibrator plain_calibrator() {
   return [](const Calibration& calibration) {
-    return calibrate(calibration, {}, {.hold_undetermined = false});  // costs are compared
+    return calibrate(calibration, {},
+                     {.hold_undetermined = false});  // what samples determine is compared
   };
 }
 
