@@ -167,8 +167,12 @@ TEST_F(Assemble, OtherSamplesOfWhatIsAssembledAreAsAssembledAnew) {
   for (Sample& sample : scenario_.samples) sample.joint_positions.front() += 0.02;
   ASSERT_THAT(assembled().errors, IsEmpty());
   const Eigen::VectorXd expected = calibrate(calibration_).table.values();
-  EXPECT_EQ(calibrate(with_samples(first, scenario_.samples)).table.values(), expected);
-  EXPECT_NE(calibrate(first).table.values(), expected);
+  const auto differs = [&](const Calibration& other) {
+    return (calibrate(other).table.values() - expected).norm();
+  };
+  // The search for poses may take other samples, and so begin elsewhere.
+  EXPECT_LT(differs(with_samples(first, scenario_.samples)), 1e-7);
+  EXPECT_GT(differs(first), 1e-3);
   scenario_.samples.pop_back();
   EXPECT_THROW((void)with_samples(first, scenario_.samples), std::invalid_argument);
 }

@@ -9,6 +9,7 @@
 
 #include "kinecal/files/checksum.hpp"
 #include "kinecal/files/json/json_text.hpp"
+#include "kinecal/text/name_list.hpp"
 #include "support/hostile_names.hpp"
 #include "support/shell_words.hpp"
 
@@ -120,7 +121,7 @@ TEST(Html, CommandsAreCopiedAsWordsWhateverNamesContain) {
     const test::PastedCommand hold =
         test::paste(copied(document.select_node("//div[@class='open']/p/code").node()));
     EXPECT_FALSE(hold.did_more) << name;
-    EXPECT_THAT(hold.words, testing::Contains(testing::EndsWith(name)));
+    EXPECT_THAT(hold.words, testing::Contains(testing::EndsWith(list_entry(name))));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/text/name_list.hpp"
 #include "support/hostile_names.hpp"
 #include "support/shell_words.hpp"
 
@@ -207,11 +208,12 @@ TEST(NextStep, GivesNamesAndFoldersAsWordsWhateverTheyAre) {
     hold = {all.result.table.add({.name = name + " x"})};
     // A folder of this name looks like the option, which is not given twice.
     const std::string force = name == "--force" ? "calibrate" : "--force";
-    EXPECT_THAT(pasted(all),
-                testing::IsSupersetOf(
-                    {name, (name.starts_with("-") ? "--hold=" : "") + name + " x", force}));
+    EXPECT_THAT(
+        pasted(all),
+        testing::IsSupersetOf(
+            {name, (name.starts_with("-") ? "--hold=" : "") + list_entry(name) + " x", force}));
     EXPECT_THAT(observability_text("s", all.assessments[0].observability, all.result.table),
-                HasSubstr(": " + ShellCommand().add_option("--hold", {name + " x"}).str() + "\n"));
+                HasSubstr(": " + ShellCommand().add_names("--hold", {name + " x"}).str() + "\n"));
     all.judgement = {};
     EXPECT_THAT(pasted(all),
                 testing::ElementsAre("kinecal", "verify", shell_file(name), "NEW_SAMPLES"));
