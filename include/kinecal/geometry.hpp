@@ -1,9 +1,12 @@
-// Umbrella header of geometry/: jets, packets, rotations, poses and a median.
+// Umbrella header of geometry/: jets, packets, rotations, poses, a median, and symmetric
+// matrices.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "kinecal/geometry/eigen_layout.hpp"
+#include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/geometry/jet.hpp"
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/geometry/packet.hpp"
 #include "kinecal/geometry/pose.hpp"

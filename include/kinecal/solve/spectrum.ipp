@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
-#include "kinecal/solve/eigenpairs.hpp"
+#include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/solve/spectrum.hpp"
 
 namespace kinecal::detail {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "kinecal/solve/eigenpairs.hpp"
+#include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/solve/stack.hpp"
 
 namespace kinecal {

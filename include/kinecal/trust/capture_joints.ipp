@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/solve/ldlt.hpp"
 #include "kinecal/trust/capture_trials.ipp"
 #include "kinecal/trust/judge.hpp"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/solve/ldlt.hpp"
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/trust/pose_rows.ipp"
 
 namespace kinecal {

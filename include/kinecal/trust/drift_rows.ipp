@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "kinecal/solve/eigenpairs.hpp"
+#include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/drift.hpp"
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "kinecal/solve/ldlt.hpp"
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/trust/drift_fit.ipp"
 #include "kinecal/trust/f_distribution.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kinecal/solve/eigenpairs.hpp"
+#include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/pose_rows.ipp"
 

@@ -9,8 +9,8 @@
 #include <map>
 #include <string>
 
+#include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
-#include "kinecal/solve/eigenpairs.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/joint_effects.ipp"
 #include "kinecal/trust/judge.hpp"

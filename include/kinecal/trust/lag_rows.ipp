@@ -7,8 +7,8 @@
 #include <map>
 #include <vector>
 
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/geometry/median.hpp"
-#include "kinecal/solve/ldlt.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/stamp_jitter.ipp"
 

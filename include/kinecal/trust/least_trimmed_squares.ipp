@@ -17,7 +17,7 @@
 #include <random>
 #include <vector>
 
-#include "kinecal/solve/ldlt.hpp"
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/pose_groups.hpp"
 

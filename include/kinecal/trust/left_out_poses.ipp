@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kinecal/solve/ldlt.hpp"
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/pose_rows.ipp"

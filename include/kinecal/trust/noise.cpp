@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/geometry/median.hpp"
-#include "kinecal/solve/eigenpairs.hpp"
 
 namespace kinecal {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/solve/determined_spectrum.ipp"
-#include "kinecal/solve/ldlt.hpp"
 #include "kinecal/trust/measured_numbers.hpp"
 #include "kinecal/trust/online.hpp"
 #include "kinecal/trust/pose_variance.ipp"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "kinecal/solve/ldlt.hpp"
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/trust/f_distribution.hpp"
 
 namespace kinecal {

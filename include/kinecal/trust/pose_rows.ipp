@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/solve/eigenpairs.hpp"
+#include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/pose_groups.hpp"
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <span>
@@ -12,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/projection_map.hpp"
 
 namespace kinecal::detail {
@@ -133,7 +133,7 @@ class TakenUp {
   }
   /// (6 x free)
   [[nodiscard]] Eigen::MatrixXd motion() const {
-    return -squares_.completeOrthogonalDecomposition().solve(products_);
+    return -Spectrum(squares_).pseudo_inverse() * products_;
   }
 
  private:

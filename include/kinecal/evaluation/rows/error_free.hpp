@@ -9,11 +9,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 
 #include "kinecal/geometry/jet.hpp"
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/geometry/packet.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/sensors/quantity_vectors.hpp"
@@ -22,18 +22,26 @@ namespace kinecal::detail {
 
 /// The shortest step of V variables that makes r + D x zero, or the smallest r if V < M; lane by
 /// lane.  Zero for variables that do not affect r.
+/// @tparam V  at most 6
 template <class S, int M, int V>
 [[nodiscard]] Eigen::Matrix<S, V, 1> shortest_step(const Eigen::Matrix<S, M, 1>& residual,
                                                    const Eigen::Matrix<S, M, V>& derivatives) {
+  constexpr int kSmaller = std::min(M, V);
   Eigen::Matrix<S, V, 1> step;
   for (int i = 0; i < kLanes<S>; ++i) {
     const Eigen::Matrix<double, M, 1> r = lane_of(residual, i);
     const Eigen::Matrix<double, M, V> d = lane_of(derivatives, i);
     Eigen::Matrix<double, V, 1> x;
+    Eigen::Matrix<double, kSmaller, kSmaller> squares;
     if constexpr (M <= V) {
-      x = d.transpose() * Eigen::Matrix<double, M, M>(d * d.transpose()).ldlt().solve(r);
+      squares.noalias() = d * d.transpose();
+      Eigen::Matrix<double, M, 1> multipliers = r;
+      solve_small(squares.data(), multipliers.data(), M);
+      x.noalias() = d.transpose() * multipliers;
     } else {
-      x = Eigen::Matrix<double, V, V>(d.transpose() * d).ldlt().solve(d.transpose() * r);
+      squares.noalias() = d.transpose() * d;
+      x.noalias() = d.transpose() * r;
+      solve_small(squares.data(), x.data(), V);
     }
     for (int k = 0; k < V; ++k) set_lane(step(k), i, -x(k));
   }

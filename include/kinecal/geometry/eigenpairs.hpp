@@ -20,5 +20,5 @@ struct Eigenpairs {
 }  // namespace kinecal::detail
 
 #ifdef KINECAL_HEADER_ONLY
-#include "kinecal/solve/eigenpairs.ipp"
+#include "kinecal/geometry/eigenpairs.ipp"
 #endif

@@ -4,7 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "kinecal/solve/eigenpairs.hpp"
+#include "kinecal/geometry/eigenpairs.hpp"
 
 namespace kinecal::detail {
 

@@ -1,4 +1,4 @@
-#include "kinecal/solve/ldlt.hpp"
+#include "kinecal/geometry/ldlt.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,6 +28,17 @@ TEST(Ldlt, LeastPivotIsNegativeOfAnIndefiniteMatrix) {
   Eigen::MatrixXd matrix = definite();
   matrix(1, 1) = 0.0;
   EXPECT_NEAR(detail::Ldlt(matrix).least_pivot(), -1.0, kRounding);
+}
+
+TEST(Ldlt, SmallSystemsAreSolvedInPlaceAndMayBeSingular) {
+  Eigen::Vector2d x(8.0, 8.0);
+  const Eigen::MatrixXd matrix = definite();
+  detail::solve_small(matrix.data(), x.data(), 2);
+  EXPECT_LT((x - Eigen::Vector2d(1.0, 2.0)).norm(), kRounding);
+  const Eigen::Matrix3d singular = Eigen::Vector3d(0.0, 4.0, 0.0).asDiagonal();
+  Eigen::Vector3d y(0.0, 8.0, 0.0);
+  detail::solve_small(singular.data(), y.data(), 3);
+  EXPECT_EQ(y, Eigen::Vector3d(0.0, 2.0, 0.0));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "kinecal/solve/ldlt.hpp"
+#include "kinecal/geometry/ldlt.hpp"
 
 namespace kinecal::detail {
 
@@ -21,6 +21,15 @@ KINECAL_INLINE Eigen::MatrixXd Ldlt::solve(const Eigen::MatrixXd& b) const {
 KINECAL_INLINE double Ldlt::least_pivot() const {
   if (ldlt_.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
   return ldlt_.vectorD().minCoeff();
+}
+
+KINECAL_INLINE void solve_small(const double* matrix, double* b, int n) {
+  constexpr int kMost = 6;
+  using Small =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMost, kMost>;
+  using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMost, 1>;
+  Eigen::Map<SmallVector> x(b, n);
+  x = Eigen::LDLT<Small>(Eigen::Map<const Small>(matrix, n, n)).solve(SmallVector(x)).eval();
 }
 
 }  // namespace kinecal::detail

@@ -25,8 +25,13 @@ class Ldlt {
   Eigen::LDLT<Eigen::MatrixXd> ldlt_;
 };
 
+/// The same for at most six rows, without the heap.
+/// @param matrix  (n x n) symmetric, positive semidefinite: only its lower triangle is read; n <= 6
+/// @param b       (n) in: the right side; out: x, zero where the matrix is
+void solve_small(const double* matrix, double* b, int n);
+
 }  // namespace kinecal::detail
 
 #ifdef KINECAL_HEADER_ONLY
-#include "kinecal/solve/ldlt.ipp"
+#include "kinecal/geometry/ldlt.ipp"
 #endif

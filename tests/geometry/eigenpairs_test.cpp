@@ -1,4 +1,4 @@
-#include "kinecal/solve/eigenpairs.hpp"
+#include "kinecal/geometry/eigenpairs.hpp"
 
 #include <gtest/gtest.h>
 
