@@ -262,6 +262,20 @@ TEST(Judge, DoubtsJointsThatAreFarOff) {
   }
 }
 
+TEST(Judge, AValueThatRanOffIsOneThatSamplesDoNotDetermine) {
+  Judged judged;
+  for (const char* name : {"elbow", "wrist"}) judged.set(name, 135.0);
+  judged.assessments[0].size = 1.5;
+  expect(judged.judgement(), Grade::do_not_use,
+         "these samples do not determine 'elbow' (it ran off, by 7.73e+03 deg) and 1 more; record "
+         "more poses");
+  for (const char* name : {"elbow", "wrist"}) judged.set(name, 0.0);
+  judged.set("head_pan_x", 1100.0);
+  const Judgement judgement = judged.judgement();
+  expect(judgement, Grade::do_not_use, "do not determine 'head_pan_x' (it ran off, by 1.1e+03 m);");
+  EXPECT_TRUE(judgement.wants_samples);
+}
+
 TEST(Judge, DoubtsIntrinsicsAndDepthThatAreFarOff) {
   for (const auto& [name, value] :
        {std::pair("camera_fx", 0.1), {"camera_z_offset", -0.11}, {"head_pan_x", 0.06}}) {

@@ -29,8 +29,16 @@ namespace kinecal::detail {
                                : "  Half a turn: is the motor screwed on so?";
 }
 
+/// A turn by more than half a turn, or a shift by more than the robot is large: no mistake has this effect, but the valley
+/// of a problem that the samples leave open.
+[[nodiscard]] inline bool ran_off(const Parameter& p, double by, double size) {
+  return p.unit == "rad" ? std::abs(by) > std::numbers::pi
+                         : p.unit == "m" && size > 0.0 && std::abs(by) > size;
+}
+
 /// Changes that are not plausible: the worst, by its limits, and how many more.
-inline void judge_changes(const CalibrationStep& step, const CalibrationResult& result,
+/// @param size  of the robot, metres
+inline void judge_changes(const CalibrationStep& step, const CalibrationResult& result, double size,
                           Judgement& judgement) {
   const Parameter* worst = nullptr;
   double times = 0.0;
@@ -48,6 +56,15 @@ inline void judge_changes(const CalibrationStep& step, const CalibrationResult& 
   }
   if (worst == nullptr) return;
   const double by = change_of(*worst);
+  if (ran_off(*worst, by, size)) {
+    judgement.wants_samples = true;
+    judgement.add(Grade::do_not_use,
+                  "these samples do not determine '" + worst->name + "' (it ran off, by " +
+                      reading(by, worst->unit) + ")" +
+                      (others > 0 ? " and " + std::to_string(others) + " more" : "") +
+                      "; record more poses that differ, or free fewer parameters");
+    return;
+  }
   judgement.add(
       grade, "'" + worst->name + "' changed by " +
                  (worst->unit == "1" ? reading(1e2 * by, "1") + " %" : reading(by, worst->unit)) +
@@ -77,7 +94,7 @@ inline void judge_signs(const CalibrationStep& step, const CalibrationResult& re
 
 inline void judge_values(const CalibrationStep& step, const CalibrationResult& result,
                          const Assessment& assessment, Judgement& judgement) {
-  judge_changes(step, result, judgement);
+  judge_changes(step, result, assessment.size, judgement);
   judge_signs(step, result, assessment, judgement);
   for (const int p : assessment.at_bound) {
     judgement.add(Grade::use_with_care, "'" + result.table[p].name + "' ended at its bound " +
