@@ -340,7 +340,7 @@ TEST_F(Init, SeesFromSamplesWhetherTheHandHoldsTheBoard) {
       test::source_folder() + "/examples/mobile_manipulator/mobile_manipulator.urdf";
   for (const std::string& robot : {mobile, urdf("panda")}) {
     const std::string call = test::kinecal_program() + " ";
-    ASSERT_EQ(run(call + "simulate " + robot + " --target apriltag --poses 12 -o sim --force").code,
+    ASSERT_EQ(run(call + "simulate " + robot + " --target apriltag --poses 8 -o sim --force").code,
               0);
     const YAML::Node config = YAML::LoadFile((folder_ / "sim/calibrate.yaml").string());
     const auto camera = config["models"][1]["frame"].as<std::string>();
