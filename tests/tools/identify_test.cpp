@@ -164,12 +164,12 @@ Counts counts_of(int robots, unsigned seed, const Errors& errors) {
 }
 
 TEST(Identify, FreesNothingInAPerfectRobot) {
-  (void)counts_of(test::repetitions(34, 1), 0, [](int) { return 0; });
+  (void)counts_of(test::repetitions_of_study(34, 1), 0, [](int) { return 0; });
 }
 
 TEST(Identify, NamesWhatIsWrong) {
   const Counts all =
-      counts_of(test::repetitions(84, 1), 1000, [](int number) { return 1 + number % 5; });
+      counts_of(test::repetitions_of_study(84, 5), 1000, [](int number) { return 1 + number % 5; });
   EXPECT_LE(all.missed, 0.1 * all.wrong);
 }
 
