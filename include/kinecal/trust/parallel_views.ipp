@@ -1,13 +1,15 @@
 // Whether a flat target was held parallel to itself in all views of a camera.
 //
 // Such views leave the focal length open: a target twice as far in front of a lens twice as long gives the same pixels.
-// Of tilts that come from noise a fit makes a focal length with a small +-, so the tilts are held against their own +-.
+// Of tilts that come from noise, or from a lens that is not quite right, a fit makes a focal length with a small +-.  So the
+// tilts are held against their own +-, and against two degrees: below, foreshortening is less than a thousandth.
 // Source: Zhang, A Flexible New Technique for Camera Calibration, 2000, section 4.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -54,11 +56,12 @@ struct TargetPlane {
       noise * noise * Spectrum(information).pseudo_inverse().bottomRightCorner<3, 3>()};
 }
 
-/// True if the planes of all views are parallel within twice what noise does.
+/// True if the planes of all views are parallel within twice what noise does, or within two degrees.
 /// @param noise  of a pixel coordinate, pixels
 [[nodiscard]] inline bool views_are_parallel(const SolvedProjection& camera,
                                              const SeenByCamera& seen, double noise) {
   constexpr double kByNoise = 4.0;  // of squares
+  constexpr double kSmall = 2.0 * std::numbers::pi / 180.0;
   std::vector<TargetPlane> planes;
   Vector3<double> sum = Vector3<double>::Zero();
   std::size_t first = 0;
@@ -74,13 +77,15 @@ struct TargetPlane {
   const Vector3<double> across = mean.unitOrthogonal();
   Eigen::Matrix<double, 3, 2> tilts;
   tilts << across, mean.cross(across);
-  double squares = 0.0;
+  double squares = 0.0, by_noise = 0.0;
   for (const TargetPlane& plane : planes) {
     const Eigen::Vector2d tilt = tilts.transpose() * mean.cross(plane.normal);
     const Eigen::Matrix2d variance = tilts.transpose() * plane.covariance * tilts;
-    squares += tilt.dot(variance.inverse() * tilt);
+    squares += tilt.squaredNorm();
+    by_noise += tilt.dot(variance.inverse() * tilt);
   }
-  return squares < kByNoise * 2.0 * static_cast<double>(planes.size() - 1);
+  const double freedom = 2.0 * static_cast<double>(planes.size() - 1);
+  return squares < kSmall * kSmall * freedom || by_noise < kByNoise * freedom;
 }
 
 }  // namespace kinecal::detail
