@@ -51,12 +51,9 @@ function(kinecal_link_levels program)
     INSTALL_RPATH "$ORIGIN/${from_bin}")
 endfunction()
 
-# What kinecal_core and kinecal_solve have in them, compiled for one level; in larger units than theirs, which takes
-# less time in total.
+# What kinecal_core and kinecal_solve have in them, compiled for one level.
 function(kinecal_add_part part library level)
-  kinecal_add_units(units ${library}_levels 24 "${KINECAL_ALONE_${library}}" "" ${KINECAL_FOLDERS_${library}})
-  kinecal_add_units(warm ${library}_levels 24 "${KINECAL_ALONE_${library}}" -O2 ${KINECAL_WARM_${library}})
-  add_library(${part} OBJECT ${units} ${warm})
+  add_library(${part} OBJECT ${KINECAL_UNITS_${library}})
   target_include_directories(${part} PRIVATE ${PROJECT_SOURCE_DIR}/include)
   target_include_directories(${part} SYSTEM PRIVATE
     $<TARGET_PROPERTY:Ceres::ceres,INTERFACE_INCLUDE_DIRECTORIES>)

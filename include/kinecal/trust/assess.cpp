@@ -136,8 +136,8 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.pattern = residual_pattern(problem, inside, fit, values, samples, poses, effects);
   found.lens = lens_pattern(problem, inside, fit, values, samples, poses);
   found.folded = folded_lenses(problem, free, values, samples);
-  found.maps = projection_maps(
-      {*evaluator, inside, values, fit, found.uncertainty, found.noise, samples, poses});
+  found.maps =
+      projection_maps({*evaluator, inside, values, fit, found.uncertainty, samples, poses});
   found.alike = alike_pixels(problem, fit, found.maps, samples);
   found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
   found.held_out = detail::held_out_of(*evaluator, values, fit, samples, poses, options);

@@ -18,7 +18,6 @@ namespace kinecal::detail {
 struct SeenByCamera {
   std::vector<Eigen::Vector2d> pixels;
   std::vector<double> distances;  ///< from the camera, metres; 0: unknown
-  std::vector<std::size_t> ends;  ///< of each view: how many features are in it and those before
   std::vector<double> settings;
   std::array<double, 2> low{}, high{};
 };
@@ -73,7 +72,6 @@ inline void set_distances(const AnyProblem& problem, const FeaturePlaces& places
         all.high[k] = std::max(all.high[k], pixel(static_cast<Eigen::Index>(k)));
       }
     }
-    all.ends.push_back(all.pixels.size());
   }
   if (info != nullptr && info->width > 0 && info->height > 0) {
     all.low = {0.0, 0.0};

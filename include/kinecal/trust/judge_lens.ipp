@@ -77,16 +77,11 @@ inline void judge_views(const Assessment& step, const ParameterTable& table, Jud
                         " too few for the lens of '" + camera +
                         "', and their +- mean little; take 20, tilted by 30 degrees to all sides");
     }
-    const bool parallel =
-        std::any_of(step.maps.begin(), step.maps.end(),
-                    [&](const ProjectionMap& map) { return map.sensor == camera && map.parallel; });
-    if (parallel || (deviation > kKnown && std::isfinite(deviation))) {
+    if (deviation > kKnown && std::isfinite(deviation)) {
       judgement.wants_samples = true;
-      judgement.add(Grade::do_not_use,
-                    "these views do not tell the focal length of '" + camera + "' (" +
-                        (parallel ? "the target is parallel to itself in all"
-                                  : "+- " + reading(1e2 * deviation, "1") + " %") +
-                        "): tilt the target by 30 degrees to all sides");
+      judgement.add(Grade::do_not_use, "these views do not tell the focal length of '" + camera +
+                                           "' (+- " + reading(1e2 * deviation, "1") +
+                                           " %): tilt the target by 30 degrees to all sides");
     }
   }
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/projection_map.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +12,6 @@
 #include "kinecal/text/image_region.hpp"
 #include "kinecal/trust/camera_features.ipp"
 #include "kinecal/trust/halves_apart.ipp"
-#include "kinecal/trust/parallel_views.ipp"
 #include "kinecal/trust/projection_derivatives.ipp"
 
 namespace kinecal {
@@ -114,19 +114,6 @@ class CameraMap {
   double distance_ = 0.0;
 };
 
-/// The noise of a pixel coordinate of a camera, pixels; 0 if no error block compares its pixels.
-[[nodiscard]] double noise_of_pixels(const KnownSolution& solution, int camera) {
-  for (std::size_t t = 0; t < solution.noise.size(); ++t) {
-    const std::vector<int>& sensors =
-        solution.evaluator.problem().term(static_cast<int>(t)).sensors;
-    if (solution.noise[t].unit == "px" &&
-        std::find(sensors.begin(), sensors.end(), camera) != sensors.end()) {
-      return solution.noise[t].own_or_all();
-    }
-  }
-  return 0.0;
-}
-
 }  // namespace
 }  // namespace detail
 
@@ -187,11 +174,8 @@ std::vector<ProjectionMap> projection_maps(const KnownSolution& solution) {
       allowed =
           halves->covariance(columns, solution.uncertainty.covariance.matrix()(columns, columns));
     }
-    const bool parallel = detail::views_are_parallel(
-        camera, seen, detail::noise_of_pixels(solution, static_cast<int>(s)));
     maps.push_back(detail::CameraMap(solution, camera, std::move(seen))
                        .map(mounted.mount().name, apart, allowed, solution.poses.count - 1.0));
-    maps.back().parallel = parallel;
   }
   return maps;
 }

@@ -23,7 +23,6 @@
 
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/solve/linear_fit.hpp"
-#include "kinecal/trust/noise.hpp"
 #include "kinecal/trust/pose_groups.hpp"
 #include "kinecal/trust/uncertainty.hpp"
 
@@ -70,8 +69,6 @@ struct ProjectionMap {
   std::vector<CameraNumber> numbers = {};  ///< of the first sample's camera_info, corrected
   std::vector<KnownPixel> cells = {};      ///< row by row
   std::optional<HalvesApart> halves = {};  ///< nullopt if there are too few poses
-  /// A flat target is parallel to itself in all views: the +- of the focal length comes from noise.
-  bool parallel = false;
 
   /// The cell of a pixel; nullptr outside.
   [[nodiscard]] const KnownPixel* at(double u, double v) const;
@@ -84,14 +81,13 @@ struct ProjectionMap {
 
 /// What is known of the solution.
 struct KnownSolution {
-  AnyEvaluator& evaluator;            ///< of the problem and its free parameters
-  const FreeSet& free;                ///< those of the evaluator
-  ParameterValues values;             ///< of all parameters of the table
-  const LinearFit& fit;               ///< there
-  const Uncertainty& uncertainty;     ///< of the free parameters
-  std::span<const BlockNoise> noise;  ///< of each error block, in their order
-  std::span<const Sample> samples;    ///< those of the problem, in their order
-  const PoseGroups& poses;            ///< of these
+  AnyEvaluator& evaluator;          ///< of the problem and its free parameters
+  const FreeSet& free;              ///< those of the evaluator
+  ParameterValues values;           ///< of all parameters of the table
+  const LinearFit& fit;             ///< there
+  const Uncertainty& uncertainty;   ///< of the free parameters
+  std::span<const Sample> samples;  ///< those of the problem, in their order
+  const PoseGroups& poses;          ///< of these
 };
 
 /// Maps of the cameras of which something is free: an intrinsic parameter or a coefficient of the lens.
