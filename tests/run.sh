@@ -11,12 +11,10 @@ cmake/install_packages.sh test
 
 # run PRESET [ARGUMENT...]    tests of a preset; those that fail once more, so that this ends with what failed
 run() {
-  preset=$1
-  shift
-  echo "== tests of $preset, $(date +%H:%M:%S)"
-  ctest --preset "$preset" -j "$(nproc)" "$@" && return
+  echo "== tests of $1, $(date +%H:%M:%S)"
+  ctest -j "$(nproc)" --preset "$@" && return
   echo "== once more"
-  ctest --preset "$preset" --rerun-failed --output-on-failure 2>&1 | tail -n 80
+  ctest --preset "$1" --rerun-failed --output-on-failure 2>&1 | tail -n 80
   exit 1
 }
 
