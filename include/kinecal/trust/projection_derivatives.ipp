@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <span>
@@ -11,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/projection_map.hpp"
 
 namespace kinecal::detail {
@@ -133,7 +133,7 @@ class TakenUp {
   }
   /// (6 x free)
   [[nodiscard]] Eigen::MatrixXd motion() const {
-    return -Spectrum(squares_).pseudo_inverse() * products_;
+    return -squares_.completeOrthogonalDecomposition().solve(products_);
   }
 
  private:

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/recording_change.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <vector>
 
-#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/joint_effects.ipp"
 #include "kinecal/trust/unexplained.ipp"
@@ -125,9 +125,7 @@ bool follows_poses(const AnyProblem& problem, const RecordingChange& change,
     course(s) = change.drifts ? part : (s < change.sample ? 0.0 : 1.0);
   }
   course.array() -= course.mean();
-  const Eigen::VectorXd by_poses =
-      detail::Spectrum(poses.transpose() * poses).pseudo_inverse() * (poses.transpose() * course);
-  const Eigen::VectorXd left = course - poses * by_poses;
+  const Eigen::VectorXd left = course - poses * poses.colPivHouseholderQr().solve(course);
   return left.squaredNorm() < (1.0 - kExplained) * course.squaredNorm();
 }
 
@@ -144,10 +142,8 @@ std::optional<RecordingChange> recording_change(const AnyProblem& problem, const
   }
   const Eigen::MatrixXd all = information(fit, fit.loss);
   const Eigen::MatrixXd inverse = detail::Spectrum(all).pseudo_inverse();
-  const auto effects = fit.coordinates.scale.asDiagonal();
-  const Eigen::MatrixXd scaled = effects * fit.coordinates.basis;
-  const Eigen::MatrixXd to_coordinates = detail::Ldlt(scaled.transpose() * scaled)
-                                             .solve(Eigen::MatrixXd(scaled.transpose() * effects));
+  const Eigen::MatrixXd to_coordinates =
+      fit.coordinates.basis.completeOrthogonalDecomposition().pseudoInverse();
   const std::vector<detail::CourseSums> courses = detail::course_sums(fit, problem.num_samples());
   const double tests = static_cast<double>(courses.size() * columns.size());
   std::optional<RecordingChange> best;

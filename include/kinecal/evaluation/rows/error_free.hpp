@@ -22,11 +22,11 @@ namespace kinecal::detail {
 
 /// The shortest step of V variables that makes r + D x zero, or the smallest r if V < M; lane by
 /// lane.  Zero for variables that do not affect r.
-/// @tparam V  at most 6
 template <class S, int M, int V>
 [[nodiscard]] Eigen::Matrix<S, V, 1> shortest_step(const Eigen::Matrix<S, M, 1>& residual,
                                                    const Eigen::Matrix<S, M, V>& derivatives) {
   constexpr int kSmaller = std::min(M, V);
+  static_assert(kSmaller <= 6, "solve_small() takes no more");
   Eigen::Matrix<S, V, 1> step;
   for (int i = 0; i < kLanes<S>; ++i) {
     const Eigen::Matrix<double, M, 1> r = lane_of(residual, i);
