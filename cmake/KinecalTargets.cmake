@@ -67,12 +67,12 @@ endfunction()
 
 # The translation units of folders: of each .cpp, and each .ipp beside a header of the same name, but with
 # KINECAL_HEADER_ONLY of no .ipp.
-# @param result  the variable to set
-# @param count   so many sources are one unit with KINECAL_UNITY
-# @param alone   sources that are units of their own
-# @param flag    how a release optimizes them; empty for -O3
-# @param ARGN    folders
-function(kinecal_add_units result name count alone flag)
+# @param result   the variable to set
+# @param count    so many sources are one unit with KINECAL_UNITY
+# @param alone    sources that are units of their own
+# @param options  how they are optimized
+# @param ARGN     folders
+function(kinecal_add_units result name count alone options)
   set(sources "")
   set(units "")
   foreach(folder IN LISTS ARGN)
@@ -97,8 +97,8 @@ function(kinecal_add_units result name count alone flag)
     kinecal_group_sources(grouped ${name} ${count} ${PROJECT_SOURCE_DIR}/include ${sources})
     list(APPEND units ${grouped})
   endif()
-  if(units AND flag)
-    set_source_files_properties(${units} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:${flag}>)
+  if(units)
+    set_source_files_properties(${units} PROPERTIES COMPILE_OPTIONS "${options}")
   endif()
   set(${result} ${units} PARENT_SCOPE)
 endfunction()
@@ -108,7 +108,7 @@ endfunction()
 #
 # FOLDERS       of include/kinecal: their headers and sources
 # WARM, COLD    more folders: a release compiles them with -O2 or -O1, not -O3, as a calibration spends
-#               little or hardly any of its time in them
+#               little or hardly any of its time in them; a debug build optimizes all but the cold
 # ALONE         of these folders: sources that are units of their own with KINECAL_UNITY, too
 # UNIT          so many sources are one translation unit with KINECAL_UNITY
 # LINK          what the headers include
@@ -124,9 +124,10 @@ function(kinecal_add_library name)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${folder}/*.hpp)
     list(APPEND headers ${found} ${folder}.hpp)
   endforeach()
-  kinecal_add_units(units ${name} "${ARG_UNIT}" "${ARG_ALONE}" "" ${ARG_FOLDERS})
-  kinecal_add_units(warm ${name} "${ARG_UNIT}" "${ARG_ALONE}" -O2 ${ARG_WARM})
-  kinecal_add_units(cold ${name} "${ARG_UNIT}" "${ARG_ALONE}" -O1 ${ARG_COLD})
+  kinecal_add_units(units ${name} "${ARG_UNIT}" "${ARG_ALONE}" "$<$<CONFIG:Debug>:-O1>" ${ARG_FOLDERS})
+  kinecal_add_units(warm ${name} "${ARG_UNIT}" "${ARG_ALONE}"
+    "$<$<CONFIG:Debug>:-O1>;$<$<CONFIG:Release>:-O2>" ${ARG_WARM})
+  kinecal_add_units(cold ${name} "${ARG_UNIT}" "${ARG_ALONE}" "$<$<CONFIG:Release>:-O1>" ${ARG_COLD})
   list(APPEND units ${warm} ${cold})
 
   if(NOT units)
@@ -181,8 +182,8 @@ kinecal_add_library(solve UNIT 8
   LINK kinecal_core Ceres::ceres
   PRIVATE_LINK Boost::headers)
 kinecal_add_library(io UNIT 24
-  WARM files  # readers of large recordings
-  COLD study config robots report tools procedure
+  WARM files study config  # large recordings are read, photographs rendered, doubts calibrated
+  COLD robots report tools procedure
   LINK kinecal_capture kinecal_solve nlohmann_json::nlohmann_json
   PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB
                OpenSSL::Crypto Boost::headers)
@@ -214,6 +215,18 @@ if(BUILD_SHARED_LIBS)
                           IMPORTED_LOCATION ${ceres})
   endif()
 endif()
+
+# kinecal_link_optimized_first(<program> <library>...)
+#
+# Of an inline function the linker takes the first copy that it sees.  In a program that is not optimized it shall be
+# that of the libraries, which calibrate.
+function(kinecal_link_optimized_first program)
+  if(BUILD_SHARED_LIBS OR KINECAL_HEADER_ONLY)
+    return()
+  endif()
+  list(TRANSFORM ARGN REPLACE "(.+)" "$<TARGET_FILE:kinecal_\\1>" OUTPUT_VARIABLE files)
+  target_link_options(${program} PRIVATE LINKER:--whole-archive ${files} LINKER:--no-whole-archive)
+endfunction()
 
 # Options for kinecal's own programs and tests; users do not get them.
 add_library(kinecal_warnings INTERFACE)

@@ -77,11 +77,13 @@ inline void judge_views(const Assessment& step, const ParameterTable& table, Jud
                         " too few for the lens of '" + camera +
                         "', and their +- mean little; take 20, tilted by 30 degrees to all sides");
     }
-    if (deviation > kKnown && std::isfinite(deviation)) {
+    if (deviation > kKnown) {  // infinite, if not at all
       judgement.wants_samples = true;
-      judgement.add(Grade::do_not_use, "these views do not tell the focal length of '" + camera +
-                                           "' (+- " + reading(1e2 * deviation, "1") +
-                                           " %): tilt the target by 30 degrees to all sides");
+      judgement.add(
+          Grade::do_not_use,
+          "these views do not tell the focal length of '" + camera + "'" +
+              (std::isfinite(deviation) ? " (+- " + reading(1e2 * deviation, "1") + " %)" : "") +
+              ": tilt the target by 30 degrees to all sides");
     }
   }
 }
