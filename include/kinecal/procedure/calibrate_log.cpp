@@ -180,11 +180,7 @@ class LogProcedure {
   /// Reads all files: what is wrong in them, and which of their samples are left out.
   void check_files() {
     set_limits();
-    const auto all = exchange("files", [&](int shard) { return check(shard).packed(); });
-    for (const std::vector<double>& one : all) {
-      files_.push_back(CheckedFile::unpacked(one, steps().size(),
-                                             static_cast<std::size_t>(calibration().table.size())));
-    }
+    check_files("files");
     std::int64_t far = 0, samples = 0;
     for (const CheckedFile& file : files_) {
       far += std::ssize(file.far);
@@ -192,12 +188,7 @@ class LogProcedure {
     }
     if (static_cast<double>(far) <= kMostLeftOut * static_cast<double>(samples)) return;
     limits_.clear();  // so many are no matter of single samples
-    files_.clear();
-    for (const auto& one :
-         exchange("files with all samples", [&](int shard) { return check(shard).packed(); })) {
-      files_.push_back(CheckedFile::unpacked(one, steps().size(),
-                                             static_cast<std::size_t>(calibration().table.size())));
-    }
+    check_files("files with all samples");
   }
 
   /// Solves on all samples, and judges with what the draw shows.
@@ -245,6 +236,16 @@ class LogProcedure {
   [[nodiscard]] int samples() const { return static_cast<int>(log_.samples); }
 
  private:
+  /// @param what  name of the exchange between processes
+  void check_files(const std::string& what) {
+    files_.clear();
+    for (const std::vector<double>& one :
+         exchange(what, [&](int shard) { return check(shard).packed(); })) {
+      files_.push_back(CheckedFile::unpacked(one, steps().size(),
+                                             static_cast<std::size_t>(calibration().table.size())));
+    }
+  }
+
   static constexpr double kMostLeftOut = 0.25;
 
   [[nodiscard]] const Calibration& calibration() const { return drawn_.setup.calibration; }

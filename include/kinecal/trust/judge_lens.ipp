@@ -67,7 +67,8 @@ inline void judge_views(const Assessment& step, const ParameterTable& table, Jud
     const std::string& name = table[p].name;
     if (!name.ends_with("_fx")) continue;
     const std::string camera = name.substr(0, name.size() - 3);
-    const double deviation = step.deviation(p).value_or(0.0);
+    // Of the length that was found, not of the one that it began with.
+    const double deviation = step.deviation(p).value_or(0.0) / std::abs(1.0 + table[p].value);
     if (step.views < kEnough) {
       judgement.wants_samples = true;
       const std::string different = step.views < step.samples ? " different" : "";
