@@ -3,7 +3,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 
-echo "Installs what is missing, compiles the program kinecal (three to four minutes on two cores) and"
+echo "Installs what is missing, compiles the program kinecal (some minutes on two cores) and"
 echo "calibrates a simulated robot with it."
 cmake/install_packages.sh
 cmake --preset release -B build/demo -DKINECAL_BUILD_TESTS=OFF -DKINECAL_BUILD_BENCHMARKS=OFF \

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <tuple>
 
 #include "kinecal/trust/judge_places.ipp"
 #include "support/noisy_scene.hpp"
@@ -289,6 +291,34 @@ TEST(Judge, DoubtsIntrinsicsAndDepthThatAreFarOff) {
     Judged judged;
     judged.set(name, value);
     expect(judged.judgement(), Grade::do_not_use, name);
+  }
+}
+
+/// Of views that have poses of their own: the +- of the focal length is a share of the length that was found.
+TEST(Judge, WantsViewsThatTellTheFocalLength) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  for (const auto& [value, deviation, reason] :
+       {std::tuple(0.0, 0.04, ""),
+        {0.0, 0.06, "these views do not tell the focal length of 'camera' (+- 6 %): tilt"},
+        {-0.8, 0.02, "these views do not tell the focal length of 'camera' (+- 10 %): tilt"},
+        {0.0, kNever, "these views do not tell the focal length of 'camera': tilt"}}) {
+    Judged judged;
+    judged.set("camera_fx", value);
+    Assessment& step = judged.assessments[0];
+    step.used = 6.0 * static_cast<double>(step.samples);
+    const auto fx = std::find(step.parameters.begin(), step.parameters.end(),
+                              judged.scene.result.table.find("camera_fx"));
+    ASSERT_NE(fx, step.parameters.end());
+    Eigen::VectorXd deviations = step.uncertainty.deviation.matrix();
+    deviations(fx - step.parameters.begin()) = deviation;
+    step.uncertainty.deviation = deviations;
+    const auto told = testing::Contains(HasSubstr("tell the focal length"));
+    const std::vector<std::string> reasons = judged.judgement().reasons;
+    if (*reason == '\0') {
+      EXPECT_THAT(reasons, testing::Not(told));
+    } else {
+      EXPECT_THAT(reasons, testing::Contains(HasSubstr(reason)));
+    }
   }
 }
 

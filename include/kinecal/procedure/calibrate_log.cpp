@@ -180,7 +180,7 @@ class LogProcedure {
   /// Reads all files: what is wrong in them, and which of their samples are left out.
   void check_files() {
     set_limits();
-    check_files("files");
+    read_files("files");
     std::int64_t far = 0, samples = 0;
     for (const CheckedFile& file : files_) {
       far += std::ssize(file.far);
@@ -188,7 +188,7 @@ class LogProcedure {
     }
     if (static_cast<double>(far) <= kMostLeftOut * static_cast<double>(samples)) return;
     limits_.clear();  // so many are no matter of single samples
-    check_files("files with all samples");
+    read_files("files with all samples");
   }
 
   /// Solves on all samples, and judges with what the draw shows.
@@ -237,7 +237,7 @@ class LogProcedure {
 
  private:
   /// @param what  name of the exchange between processes
-  void check_files(const std::string& what) {
+  void read_files(const std::string& what) {
     files_.clear();
     for (const std::vector<double>& one :
          exchange(what, [&](int shard) { return check(shard).packed(); })) {
