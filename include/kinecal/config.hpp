@@ -16,8 +16,6 @@
 #include "kinecal/config/doubts/ignored_urdf.hpp"
 #include "kinecal/config/doubts/initial_values.hpp"
 #include "kinecal/config/doubts/joint_positions.hpp"
-#include "kinecal/config/doubts/judge_causes.hpp"
-#include "kinecal/config/doubts/likely_causes.hpp"
 #include "kinecal/config/doubts/measured_poses.hpp"
 #include "kinecal/config/doubts/occurrences.hpp"
 #include "kinecal/config/doubts/repeated_samples.hpp"

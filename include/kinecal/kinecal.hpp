@@ -5,6 +5,7 @@
 #include "kinecal/capture.hpp"
 #include "kinecal/config.hpp"
 #include "kinecal/core.hpp"
+#include "kinecal/explain.hpp"
 #include "kinecal/files.hpp"
 #include "kinecal/procedure.hpp"
 #include "kinecal/report.hpp"

@@ -29,7 +29,6 @@
 #include "kinecal/tools/identify/open_config.hpp"
 #include "kinecal/tools/identify/robot_search.hpp"
 #include "kinecal/tools/identify/tell_apart.hpp"
-#include "kinecal/tools/identify/would_help.hpp"
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/determined_offsets.hpp"
 #include "kinecal/tools/init/hand_eye.hpp"

@@ -20,7 +20,6 @@
 #include "kinecal/trust/feature_places.hpp"
 #include "kinecal/trust/folded_lens.hpp"
 #include "kinecal/trust/gradient_variance.hpp"
-#include "kinecal/trust/held_changes.hpp"
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/identify.hpp"
 #include "kinecal/trust/judge.hpp"

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "support/noisy_scene.hpp"
 
 namespace kinecal {
@@ -13,7 +15,7 @@ std::optional<RecordingChange> change_in(test::NoisyScene& scene) {
   const FreeSet free = scene.free();
   const auto evaluator = scene.solved().evaluator(free);
   const LinearFit fit = scene.linear(*evaluator);
-  return recording_change(scene.solved(), free, fit);
+  return recording_change(scene.solved(), free, fit, each_its_own(scene.samples.size()));
 }
 
 /// Moves a joint of all samples from one on: it slipped.
@@ -70,14 +72,48 @@ TEST(RecordingChange, OfTheLastSamplesIsABadCapture) {
   EXPECT_FALSE(change_in(scene));
 }
 
-/// A wrong model is no change: a third of the samples, here and there, has another elbow.
-TEST(RecordingChange, IsNoneIfSamplesAreBadHereAndThere) {
+/// A third of the samples, here and there, has another elbow.
+TEST(RecordingChange, OfSamplesHereAndThereIsFoundWithThem) {
   test::NoisyScene scene(40);
-  for (std::size_t s = 0; s < 40; s += 3) {
-    slip(scene, "elbow", s, 0.03);
-    if (s + 1 < 40) slip(scene, "elbow", s + 1, -0.03);
+  test::misread(scene, "elbow", [](std::size_t s, double) { return s % 3 == 0 ? -0.03 : 0.0; });
+  const auto found = change_in(scene);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->owner, "elbow");
+  EXPECT_EQ(found->here_and_there.size(), 14u);
+}
+
+/// A joint that does not repeat is no two joints.
+TEST(RecordingChange, IsNoneOfAJointThatScatters) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    test::NoisyScene scene(40, seed);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> scatter(0.0, 0.02);
+    test::misread(scene, "elbow", [&](std::size_t, double) { return scatter(random); });
+    EXPECT_FALSE(change_in(scene)) << seed;
   }
-  EXPECT_FALSE(change_in(scene));
+}
+
+TEST(RecordingChange, OfAPartInTheMiddleIsFoundWithItsEnds) {
+  test::NoisyScene scene(48);
+  test::misread(scene, "elbow", [](std::size_t s, double) { return s >= 15 && s < 33 ? -0.03 : 0.0; });
+  const auto found = change_in(scene);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->owner, "elbow");
+  EXPECT_NEAR(found->sample, 15, 3);
+  EXPECT_NEAR(found->end, 33, 3);
+  EXPECT_LT(found->noise_left, 0.6);
+}
+
+TEST(RecordingChange, HereAndThereIsThatOfTwoRobots) {
+  test::NoisyScene scene(40);
+  for (const char* joint : {"elbow", "shoulder_lift"}) {
+    test::misread(scene, joint, [](std::size_t s, double) { return s % 2 == 0 ? 0.0 : -0.02; });
+  }
+  const auto found = change_in(scene);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->owner, "") << "the zeros of all joints";
+  EXPECT_EQ(found->here_and_there.size(), 20u);
+  EXPECT_LT(found->noise_left, 0.5);
 }
 
 }  // namespace

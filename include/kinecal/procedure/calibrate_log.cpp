@@ -499,7 +499,7 @@ namespace {
     procedure.check_files();
     take_all(procedure, calibrated);
   }
-  explain(calibrated);
+  explain(calibrated, of_draw);
   return calibrated;
 }
 

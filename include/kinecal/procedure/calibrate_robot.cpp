@@ -12,13 +12,13 @@
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
-#include "kinecal/config/doubts/judge_causes.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/hold_parameters.hpp"
+#include "kinecal/explain/judge_causes.hpp"
+#include "kinecal/explain/would_help.hpp"
 #include "kinecal/tools/cameras/prepare_cameras.hpp"
 #include "kinecal/tools/identify/another_robot.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
-#include "kinecal/tools/identify/would_help.hpp"
 #include "kinecal/trust/judge_files.hpp"
 #include "kinecal/trust/speed_limit.hpp"
 
@@ -192,9 +192,6 @@ void search_and_fit(const CalibrationOptions& options, CalibratedRobot& calibrat
     calibrated.judgement.add(Grade::do_not_use,
                              "nothing is free, and these samples support no parameter");
   }
-  if (const std::string why = another_robot(*calibrated.robot_search); !why.empty()) {
-    calibrated.judgement.add_causes(Grade::do_not_use, {why});
-  }
 }
 
 /// How fast is still good, if the configuration has a lag.
@@ -221,19 +218,30 @@ CalibratedRobot solve_and_judge(PreparedCalibration prepared, const CalibrationO
   return calibrated;
 }
 
-void explain(CalibratedRobot& calibrated) {
+void explain(CalibratedRobot& calibrated, const CalibrationOptions& options) {
   const PreparedCalibration& setup = calibrated.setup;
   Findings& findings = calibrated;
-  if (setup.calibration.steps.empty()) return;  // nothing is free
-  judge_causes({*setup.config, setup.robot, setup.urdf_text, setup.urdf, calibrated.samples,
-                setup.calibration},
-               findings);
+  const bool frees_some = !setup.calibration.steps.empty();
+  const CalibrationInput input{*setup.config,      setup.robot,        setup.urdf_text, setup.urdf,
+                               calibrated.samples, setup.calibration};
+  const int causes = findings.judgement.causes;
+  if (frees_some) {
+    judge_causes(input, without(setup.samples, options.exclude), findings, options.suspects);
+  }
+  if (calibrated.robot_search && findings.judgement.causes == causes) {
+    const std::string why = another_robot(*calibrated.robot_search);
+    if (!why.empty()) findings.judgement.add_causes(Grade::do_not_use, {why});
+  }
+  if (!frees_some) return;
+  judge_scales(input, findings);
   if (!calibrated.robot_search) {  // else it is freed already
     const WouldHelp help = would_help(*setup.config, setup.robot, calibrated.samples,
                                       setup.calibration, findings.result);
     findings.helps = help.sentences;
     findings.helps_leave = help.left;
-    judge_help(help, findings.judgement);
+    if (!findings.assessments.empty()) {
+      judge_help(help, findings.assessments.back(), findings.judgement);
+    }
   }
   if (findings.result.converged) findings.speeds = how_fast(calibrated);
 }
@@ -282,7 +290,7 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
 CalibratedRobot calibrate_robot(PreparedCalibration prepared, const CalibrationOptions& options) {
   return detail::as_input_error([&] {
     CalibratedRobot calibrated = detail::solve_and_judge(std::move(prepared), options);
-    detail::explain(calibrated);
+    detail::explain(calibrated, options);
     return calibrated;
   });
 }

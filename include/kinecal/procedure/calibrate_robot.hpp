@@ -25,6 +25,7 @@
 
 #include "kinecal/config/config.hpp"
 #include "kinecal/config/doubts/rising.hpp"
+#include "kinecal/explain/suspect.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/report/findings.hpp"
@@ -62,6 +63,7 @@ struct CalibrationOptions {
   Search search = Search::if_open;
   bool geometry_only = false;  ///< a search frees no joint models, which a URDF cannot hold
   int draw = 3000;             ///< of calibrate_log(): samples on which a log is judged
+  std::vector<Suspect> suspects = {};  ///< what may be wrong beside what kinecal suspects
   Progress progress = {};      ///< called in each iteration; what it throws ends the calibration
 };
 
@@ -119,7 +121,7 @@ auto as_input_error(const Run& run) {
 [[nodiscard]] CalibratedRobot solve_and_judge(PreparedCalibration prepared,
                                               const CalibrationOptions& options);
 /// Adds causes, what would help, and how fast is still good.
-void explain(CalibratedRobot& calibrated);
+void explain(CalibratedRobot& calibrated, const CalibrationOptions& options);
 
 }  // namespace detail
 

@@ -193,7 +193,7 @@ std::string why_go_on(const Accuracy& wanted, const SessionFollower& session,
                                  all.samples},
                                 ahead);
     if (!why.empty()) return why;
-    detail::explain(all);
+    detail::explain(all, {});
     return detail::not_usable(all.judgement);
   });
 }

@@ -52,6 +52,8 @@ namespace kinecal::detail {
     case ErrorCourse::rounding:
       return "positions of " + owner + " are rounded to multiples of " + size +
              "; without rounding";
+    case ErrorCourse::scale:
+      return "with the points of " + owner + " multiplied by " + factor;
     case ErrorCourse::axis:
       break;
   }
@@ -75,14 +77,29 @@ inline void judge_change(const Assessment& step, const AnyProblem& problem, Judg
   const RecordingChange& change = *step.change;
   const std::string noise = reading(1e2 * change.noise_left, "1") + " %";
   const std::string size = size_of(change);
+  const std::string owner =
+      change.owner.empty() ? "the zeros of all joints" : "'" + change.owner + "'";
+  const std::string by = size.empty() ? "" : " by " + size;
   std::string text;
   if (change.drifts) {
-    text = "'" + change.owner + "' drifts" + (size.empty() ? "" : " by " + size) +
-           " from the first sample to the last: with an even drift, the noise falls to " + noise +
+    text = owner + " drifts" + by + " from the first sample to the last: with an even drift, the " +
+           "noise falls to " + noise +
            "; temperature, or something that comes loose; record again, faster";
+  } else if (!change.here_and_there.empty()) {
+    text = owner + (change.owner.empty() ? " are" : " is") + " elsewhere" + by + " in " +
+           std::to_string(change.here_and_there.size()) + " of " +
+           std::to_string(problem.num_samples()) + " samples, of which the first is " +
+           problem.source(change.here_and_there.front()) +
+           ": with another value in these, the noise falls to " + noise +
+           "; are they of another robot, or of another recording? calibrate them apart";
+  } else if (change.end > 0) {
+    text = owner + " seems to have changed" + by + " from " + problem.source(change.sample) +
+           " until " + problem.source(change.end) +
+           ": with another value in these samples, the noise falls to " + noise +
+           "; calibrate without them";
   } else {
-    text = "'" + change.owner + "' seems to have changed" + (size.empty() ? "" : " by " + size) +
-           " during the recording, before " + problem.source(change.sample) +
+    text = owner + " seems to have changed" + by + " during the recording, before " +
+           problem.source(change.sample) +
            ": with one value before and another after, the noise falls to " + noise +
            "; calibrate with the samples of one part";
   }

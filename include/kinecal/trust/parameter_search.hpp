@@ -75,10 +75,15 @@ class ParameterSearch {
   void run(const std::vector<int>& base, const Candidates& candidates,
            std::vector<int>& chosen) const;
 
+  /// What a candidate must show.
+  struct Evidence {
+    double chance = 0.0;  ///< largest that noise does as much, of all candidates together
+    double sure = 0.0;    ///< least fall of the error on held-out poses, in its standard errors
+  };
   /// Frees the candidate that explains most, of those that help.
   /// @returns  whether there is one
   bool free_one(const std::vector<int>& base, const Candidates& candidates,
-                std::vector<int>& chosen) const;
+                std::vector<int>& chosen, const Evidence& evidence) const;
   /// The candidate of the lowest rank among those that do as well in place of one of the chosen, or that one.
   [[nodiscard]] int simplest(const std::vector<int>& base, const Candidates& candidates,
                              const std::vector<int>& chosen, int k) const;
@@ -109,12 +114,6 @@ class ParameterSearch {
     int candidate = 0;
     double squares = 0.0;  ///< fall of the sum of squares
     double chance = 1.0;   ///< that noise does so
-  };
-
-  /// What a candidate must show.
-  struct Evidence {
-    double chance = 0.0;  ///< largest that noise does as much
-    double sure = 0.0;    ///< least fall of the error on held-out poses, in its standard errors
   };
 
   [[nodiscard]] Whole whole_fit(const std::vector<int>& columns) const;

@@ -24,10 +24,9 @@ bool ParameterSearch::helps(const Whole& whole, const Gain& gain, const Candidat
 }
 
 bool ParameterSearch::free_one(const std::vector<int>& base, const Candidates& candidates,
-                               std::vector<int>& chosen) const {
+                               std::vector<int>& chosen, const Evidence& of_all) const {
   constexpr std::size_t kTried = 8;  // of the best, before the search ends
-  const Evidence evidence{0.2 / static_cast<double>(candidates.size()),
-                          kSure};  // of a superfluous one in a search
+  const Evidence evidence{of_all.chance / static_cast<double>(candidates.size()), of_all.sure};
   const Whole whole = whole_fit(detail::columns_of(base, candidates, chosen));
   const std::vector<Gain> all = gains(whole, candidates, chosen);
   for (std::size_t i = 0; i < std::min(kTried, all.size()); ++i) {
@@ -113,6 +112,7 @@ std::vector<int> ParameterSearch::like(const Whole& without, const Candidates& c
 void ParameterSearch::run(const std::vector<int>& base, const Candidates& candidates,
                           std::vector<int>& chosen) const {
   constexpr double kFar = 0.5;  // of the sum of squares: linearize again
+  constexpr Evidence kOfSearch{0.2, kSure};  // what is superfluous is held again
   const auto columns = [&](const std::vector<int>& of) {
     return detail::columns_of(base, candidates, of);
   };
@@ -138,7 +138,7 @@ void ParameterSearch::run(const std::vector<int>& base, const Candidates& candid
   }
   for (;;) {
     while (seen.insert(std::set<int>(chosen.begin(), chosen.end())).second &&
-           free_one(base, candidates, chosen)) {
+           free_one(base, candidates, chosen, kOfSearch)) {
       hold_superfluous(base, candidates, chosen);
       if (whole_fit(columns(chosen)).squares < kFar * begin) return;
     }

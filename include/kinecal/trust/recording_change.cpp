@@ -8,6 +8,7 @@
 #include <map>
 #include <vector>
 
+#include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/joint_effects.ipp"
 #include "kinecal/trust/unexplained.ipp"
@@ -16,38 +17,39 @@ namespace kinecal {
 
 namespace detail {
 
-/// J^T W J and J^T W r with samples weighted by the course of a change: u is 0 before it and 1 after it, or rises
-/// from -1/2 to 1/2.
-struct CourseSums {
-  int sample = 0;               ///< the first one after the change
-  bool drifts = false;          ///< u rises
-  Eigen::MatrixXd information;  ///< sum of u J^T W J
-  Eigen::MatrixXd squared;      ///< sum of u^2 J^T W J
-  Eigen::VectorXd gradient;     ///< sum of u J^T W r
+/// How a change goes: u of each sample, by which it has changed.
+struct Course {
+  enum class Kind { step, interval, drifts } kind = Kind::step;
+  int first = 0;  ///< sample after the change
+  int end = 0;    ///< sample that is as before again
 
   /// u of a sample.
   [[nodiscard]] double at(int of, int samples) const {
-    if (drifts) return static_cast<double>(of) / std::max(1, samples - 1) - 0.5;
-    return of < sample ? 0.0 : 1.0;
+    if (kind == Kind::drifts) return static_cast<double>(of) / std::max(1, samples - 1) - 0.5;
+    return of >= first && of < end ? 1.0 : 0.0;
   }
 };
 
-/// The sums from some samples on, at up to 64 places; skips the first and the last tenth, which bad
-/// captures may explain.  Then those of a drift.
+/// J^T W J and J^T W r with samples weighted by a course.
+struct CourseSums {
+  Course course;
+  Eigen::MatrixXd information;  ///< sum of u J^T W J
+  Eigen::MatrixXd squared;      ///< sum of u^2 J^T W J
+  Eigen::VectorXd gradient;     ///< sum of u J^T W r
+};
+
+/// The sums of all courses.  Steps and ends of intervals leave out the first and the last tenth, which bad captures
+/// may explain.
 [[nodiscard]] inline std::vector<CourseSums> course_sums(const LinearFit& fit, int samples) {
-  constexpr int kParts = 64;
+  constexpr int kParts = 64, kIntervals = 16;
   const int few = std::max(3, (samples + 9) / 10);
   const Eigen::Index n = fit.size();
   const int parts = std::min(kParts, samples);
-  const CourseSums none{0, false, Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n),
+  const CourseSums none{{}, Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n),
                         Eigen::VectorXd::Zero(n)};
-  std::vector<CourseSums> sums(static_cast<std::size_t>(parts), none);
-  for (int p = 0; p < parts; ++p) {
-    sums[static_cast<std::size_t>(p)].sample =
-        static_cast<int>((static_cast<long>(p) * samples + parts - 1) / parts);
-  }
+  std::vector<CourseSums> before(static_cast<std::size_t>(parts) + 1, none);  // of all samples before a part
   CourseSums drift = none;
-  drift.drifts = true;
+  drift.course.kind = Course::Kind::drifts;
   for (const RowBlock& block : fit.blocks) {
     const auto part = static_cast<std::size_t>(static_cast<long>(block.sample) * parts / samples);
     const auto rows = fit.jacobian.middleRows(block.first, block.size);
@@ -55,23 +57,45 @@ struct CourseSums {
     const Eigen::MatrixXd information = rows.transpose() * weights.asDiagonal() * rows;
     const Eigen::VectorXd gradient =
         rows.transpose() * weights.cwiseProduct(fit.residual.segment(block.first, block.size));
-    sums[part].information += information;
-    sums[part].gradient += gradient;
-    const double u = drift.at(block.sample, samples);
+    before[part + 1].information += information;
+    before[part + 1].gradient += gradient;
+    const double u = drift.course.at(block.sample, samples);
     drift.information += u * information;
     drift.squared += u * u * information;
     drift.gradient += u * gradient;
   }
-  for (std::size_t p = sums.size(); p-- > 1;) {
-    sums[p - 1].information += sums[p].information;
-    sums[p - 1].gradient += sums[p].gradient;
+  for (std::size_t p = 1; p < before.size(); ++p) {
+    before[p].information += before[p - 1].information;
+    before[p].gradient += before[p - 1].gradient;
   }
-  for (CourseSums& step : sums) step.squared = step.information;
-  std::erase_if(sums, [&](const CourseSums& step) {
-    return step.sample < few || step.sample > samples - few;
-  });
-  sums.push_back(std::move(drift));
-  return sums;
+  const auto first_of = [&](int part) {
+    return static_cast<int>((static_cast<long>(part) * samples + parts - 1) / parts);
+  };
+  const auto between = [&](Course::Kind kind, int part, int end) {
+    const CourseSums &a = before[static_cast<std::size_t>(part)],
+                     &b = before[static_cast<std::size_t>(end)];
+    const Eigen::MatrixXd information = b.information - a.information;
+    return CourseSums{{kind, first_of(part), first_of(end)},
+                      information,
+                      information,
+                      b.gradient - a.gradient};
+  };
+  std::vector<CourseSums> all;
+  for (int p = 0; p < parts; ++p) {
+    if (first_of(p) < few || first_of(p) > samples - few) continue;
+    all.push_back(between(Course::Kind::step, p, parts));
+  }
+  all.push_back(std::move(drift));
+  const int width = std::max(1, parts / kIntervals);
+  for (int p = 0; p < parts; p += width) {
+    for (int q = p + width; q < parts; q += width) {
+      if (first_of(p) < few || first_of(q) > samples - few || first_of(q) - first_of(p) < few) {
+        continue;
+      }
+      all.push_back(between(Course::Kind::interval, p, q));
+    }
+  }
+  return all;
 }
 
 /// The fall with parameters that follow a course.  Skips parameters without effect on the samples after the
@@ -98,11 +122,130 @@ struct CourseSums {
   for (const RowBlock& block : fit.blocks) {
     const auto r = fit.residual.segment(block.first, block.size);
     const Eigen::VectorXd after = r + fit.jacobian.middleRows(block.first, block.size) *
-                                          (fall.others + course.at(block.sample, samples) * own);
+                                          (fall.others + course.course.at(block.sample, samples) * own);
     falls(block.sample) +=
         fit.loss.segment(block.first, block.size).dot(r.cwiseAbs2() - after.cwiseAbs2());
   }
   return falls.maxCoeff() > kLarge * fall.squares;
+}
+
+/// The course of a change.
+[[nodiscard]] inline Course course_of(const RecordingChange& change, int samples) {
+  if (change.drifts) return {Course::Kind::drifts};
+  return change.end > 0 ? Course{Course::Kind::interval, change.sample, change.end}
+                        : Course{Course::Kind::step, change.sample, samples};
+}
+
+/// What may change together.
+struct Changing {
+  std::string owner;         ///< empty: the zeros of all joints
+  std::vector<int> columns;  ///< of the free parameters
+};
+
+/// The parameters of each owner, then the zeros of all joints.
+[[nodiscard]] inline std::vector<Changing> what_may_change(const AnyProblem& problem,
+                                                           const FreeSet& free) {
+  std::map<std::string, std::vector<int>> columns;
+  std::vector<int> zeros;
+  for (int c = 0; c < free.size(); ++c) {
+    const int p = free.parameters()[static_cast<std::size_t>(c)];
+    const std::string& owner = problem.owners()[static_cast<std::size_t>(p)];
+    columns[owner].push_back(c);
+    if (problem.table()[p].name == owner && problem.robot().has_joint(owner)) zeros.push_back(c);
+  }
+  std::vector<Changing> all;
+  for (const auto& [owner, of_owner] : columns) all.push_back({owner, of_owner});
+  if (zeros.size() > 1) all.push_back({"", zeros});
+  return all;
+}
+
+/// How far parameters change.
+/// @param columns  of `free`
+inline void set_size(const AnyProblem& problem, const FreeSet& free,
+                     const std::vector<int>& columns, const Eigen::VectorXd& by,
+                     RecordingChange& change) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const int p = free.parameters()[static_cast<std::size_t>(columns[i])];
+    const std::string& unit = problem.table()[p].unit;
+    double& length = unit == "m" ? change.metres : change.radians;
+    if (unit == "m" || unit == "rad")
+      length = std::hypot(length, by(static_cast<Eigen::Index>(i)));
+  }
+}
+
+/// J^T W J and J^T W r of each sample.
+struct SampleSums {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+};
+
+[[nodiscard]] inline std::vector<SampleSums> sample_sums(const LinearFit& fit, int samples) {
+  const Eigen::Index n = fit.size();
+  std::vector<SampleSums> all(static_cast<std::size_t>(samples),
+                              {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
+  for (const RowBlock& block : fit.blocks) {
+    const auto rows = fit.jacobian.middleRows(block.first, block.size);
+    const auto weights = fit.loss.segment(block.first, block.size);
+    SampleSums& of = all[static_cast<std::size_t>(block.sample)];
+    of.information += rows.transpose() * weights.asDiagonal() * rows;
+    of.gradient +=
+        rows.transpose() * weights.cwiseProduct(fit.residual.segment(block.first, block.size));
+  }
+  return all;
+}
+
+/// Samples with other parameters of an owner, and what that explains.
+struct Mixture {
+  std::vector<int> changed;  ///< the fewer ones
+  Fall fall;
+};
+
+/// Splits samples in two: those that fit better with other parameters of an owner, fitted in turn with these
+/// parameters, from the direction in which the samples differ most.
+/// @param by  (coordinates x parameters) of the owner
+[[nodiscard]] inline Mixture mixture_of(const std::vector<SampleSums>& all,
+                                        const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& by,
+                                        const Eigen::VectorXd& whole) {
+  constexpr int kRounds = 30;
+  const Eigen::Index n = by.rows(), q = by.cols();
+  const Eigen::VectorXd scale =
+      whole.unaryExpr([](double w) { return w > 0.0 ? 1.0 / std::sqrt(w) : 0.0; });
+  Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(q, q);
+  for (const SampleSums& of : all) {
+    const Eigen::VectorXd g = scale.cwiseProduct(by.transpose() * of.gradient);
+    spread += g * g.transpose();
+  }
+  const Eigenpairs directions = eigenpairs(spread);
+  const Eigen::VectorXd most = directions.vectors.col(q - 1);
+  std::vector<char> changed;
+  for (const SampleSums& of : all) {
+    changed.push_back(most.dot(scale.cwiseProduct(by.transpose() * of.gradient)) > 0.0 ? 1 : 0);
+  }
+  Mixture mixture;
+  for (int round = 0; round < kRounds; ++round) {
+    CourseSums sums{{}, Eigen::MatrixXd::Zero(n, n), {}, Eigen::VectorXd::Zero(n)};
+    for (std::size_t s = 0; s < all.size(); ++s) {
+      if (changed[s] == 0) continue;
+      sums.information += all[s].information;
+      sums.gradient += all[s].gradient;
+    }
+    sums.squared = sums.information;
+    mixture.fall = fall_of(sums, inverse, by, whole);
+    const Eigen::VectorXd d = by * mixture.fall.change, others = mixture.fall.others;
+    std::vector<char> better;
+    for (const SampleSums& of : all) {
+      const Eigen::VectorXd moved = of.information * d;
+      better.push_back(2.0 * (d.dot(of.gradient) + moved.dot(others)) + d.dot(moved) < 0.0 ? 1 : 0);
+    }
+    if (better == changed) break;
+    changed = std::move(better);
+  }
+  const auto count = std::count(changed.begin(), changed.end(), 1);
+  const char fewer = 2 * count > std::ssize(all) ? 0 : 1;
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    if (changed[s] == fewer) mixture.changed.push_back(static_cast<int>(s));
+  }
+  return mixture;
 }
 
 }  // namespace detail
@@ -112,7 +255,7 @@ bool follows_poses(const AnyProblem& problem, const RecordingChange& change,
   constexpr double kExplained = 0.7;  // of the variance of the course
   const auto joints = detail::repeatable_joints(problem);
   const Eigen::Index rows = std::ssize(samples), columns = std::ssize(joints) + 1;
-  if (rows < 2 * columns) return false;
+  if (rows < 2 * columns || !change.here_and_there.empty()) return false;
   Eigen::MatrixXd poses = Eigen::MatrixXd::Ones(rows, columns);
   Eigen::VectorXd course(rows);
   for (Eigen::Index s = 0; s < rows; ++s) {
@@ -121,8 +264,8 @@ bool follows_poses(const AnyProblem& problem, const RecordingChange& change,
       const double q = samples[static_cast<std::size_t>(s)].position(name).value_or(0.0);
       poses(s, column++) = std::isfinite(q) ? q : 0.0;
     }
-    const double part = static_cast<double>(s) / static_cast<double>(rows - 1);
-    course(s) = change.drifts ? part : (s < change.sample ? 0.0 : 1.0);
+    const detail::Course of = detail::course_of(change, static_cast<int>(rows));
+    course(s) = of.at(static_cast<int>(s), static_cast<int>(rows));
   }
   course.array() -= course.mean();
   const Eigen::VectorXd left = course - poses * poses.colPivHouseholderQr().solve(course);
@@ -130,46 +273,79 @@ bool follows_poses(const AnyProblem& problem, const RecordingChange& change,
 }
 
 std::optional<RecordingChange> recording_change(const AnyProblem& problem, const FreeSet& free,
-                                                const LinearFit& fit) {
+                                                const LinearFit& fit, const PoseGroups& poses) {
+  constexpr double kLeft = 0.75, kChance = 1e-6, kSimpler = 0.03;
   const double squares = fit.loss.dot(fit.residual.cwiseAbs2());
-  const double freedom = static_cast<double>(fit.residual.size() - fit.size());
-  constexpr double kLeft = 0.75, kChance = 1e-6;
+  const double freedom = detail::freedom_of(fit, poses);
   if (detail::is_exact(problem, fit)) return {};
-  std::map<std::string, std::vector<int>> columns;
-  for (int c = 0; c < free.size(); ++c) {
-    const int p = free.parameters()[static_cast<std::size_t>(c)];
-    columns[problem.owners()[static_cast<std::size_t>(p)]].push_back(c);
-  }
+  const std::vector<detail::Changing> changing = detail::what_may_change(problem, free);
   const Eigen::MatrixXd all = information(fit, fit.loss);
   const Eigen::MatrixXd inverse = detail::Spectrum(all).pseudo_inverse();
   const Eigen::MatrixXd to_coordinates =
       fit.coordinates.basis.completeOrthogonalDecomposition().pseudoInverse();
-  const std::vector<detail::CourseSums> courses = detail::course_sums(fit, problem.num_samples());
-  const double tests = static_cast<double>(courses.size() * columns.size());
+  const int samples = problem.num_samples();
+  const std::vector<detail::CourseSums> courses = detail::course_sums(fit, samples);
+  const double tests = static_cast<double>(courses.size() * changing.size());
+  using Kind = detail::Course::Kind;
   std::optional<RecordingChange> best;
-  for (const auto& [owner, of_owner] : columns) {
+  double to_beat = kLeft;
+  for (const auto& [owner, of_owner] : changing) {
     const int q = static_cast<int>(of_owner.size());
     if (freedom - q < 2.0 * q) continue;
     const Eigen::MatrixXd by = to_coordinates(Eigen::all, of_owner);
     const Eigen::VectorXd whole = (by.transpose() * all * by).diagonal();
-    for (const detail::CourseSums& course : courses) {
-      const detail::Fall fall = detail::fall_of(course, inverse, by, whole);
+    for (const detail::CourseSums& sums : courses) {
+      const detail::Course& course = sums.course;
+      const detail::Fall fall = detail::fall_of(sums, inverse, by, whole);
       const double x = std::clamp(fall.squares / squares, 0.0, 1.0);
       const double left = std::sqrt((1.0 - x) * freedom / (freedom - q));
-      if (left > kLeft || tests * detail::chance_of_share(x, q, freedom) > kChance) continue;
-      if (best && left >= best->noise_left) continue;
-      if (detail::is_one_sample(fit, course, by, fall, problem.num_samples())) continue;
-      if (detail::implausible(problem, free, fit.coordinates.basis * fall.others, of_owner))
+      const double than = left + (owner.empty() ? kSimpler : 0.0) +
+                          (course.kind == Kind::interval ? kSimpler : 0.0);
+      if (than >= to_beat || tests * detail::chance_of_share(x, q, freedom) > kChance) continue;
+      if (detail::is_one_sample(fit, sums, by, fall, samples)) continue;
+      if (detail::implausible(problem, free, fit.coordinates.basis * fall.others, of_owner)) {
         continue;
-      best = RecordingChange{owner, course.sample, left, course.drifts};
-      for (int i = 0; i < q; ++i) {
-        const int p =
-            free.parameters()[static_cast<std::size_t>(of_owner[static_cast<std::size_t>(i)])];
-        const std::string& unit = problem.table()[p].unit;
-        double& length = unit == "m" ? best->metres : best->radians;
-        if (unit == "m" || unit == "rad") length = std::hypot(length, fall.change(i));
       }
+      to_beat = than;
+      best = RecordingChange{.owner = owner, .noise_left = left};
+      best->drifts = course.kind == Kind::drifts;
+      best->sample = course.first;
+      best->end = course.kind == Kind::interval ? course.end : 0;
+      detail::set_size(problem, free, of_owner, fall.change, *best);
     }
+  }
+  constexpr int kMostSplit = 600;  // samples
+  if (samples > kMostSplit) return best;
+  constexpr double kHalf = 0.5;
+  const std::vector<detail::SampleSums> by_sample = detail::sample_sums(fit, samples);
+  for (const auto& [owner, of_owner] : changing) {
+    const int q = static_cast<int>(of_owner.size());
+    const double of_split = freedom - q - samples;
+    if (of_split < 2.0 * q) continue;
+    const Eigen::MatrixXd by = to_coordinates(Eigen::all, of_owner);
+    const Eigen::VectorXd whole = (by.transpose() * all * by).diagonal();
+    const detail::Mixture mixture = detail::mixture_of(by_sample, inverse, by, whole);
+    const double x = std::clamp(mixture.fall.squares / squares, 0.0, 1.0);
+    const double left = std::sqrt((1.0 - x) * freedom / of_split);
+    const int few = std::max(3, samples / 10);
+    const int changed = static_cast<int>(std::ssize(mixture.changed));
+    if (changed < few || changed > samples - few) continue;
+    const double than = left + kSimpler + (owner.empty() ? kSimpler : 0.0);
+    if (left > kHalf || than >= to_beat) continue;
+    if (detail::implausible(problem, free, fit.coordinates.basis * mixture.fall.others, of_owner)) {
+      continue;
+    }
+    to_beat = than;
+    best = RecordingChange{.owner = owner, .noise_left = left};
+    const int first = mixture.changed.front(), end = mixture.changed.back() + 1;
+    constexpr int kNearlyAll = 10;  // a tenth of a part in one piece may be as before
+    if (kNearlyAll * (end - first - changed) <= end - first) {
+      best->sample = first;
+      best->end = end < samples ? end : 0;
+    } else {
+      best->here_and_there = mixture.changed;
+    }
+    detail::set_size(problem, free, of_owner, mixture.fall.change, *best);
   }
   return best;
 }

@@ -18,19 +18,6 @@ namespace {
 constexpr ErrorCourse kJointCourses[] = {ErrorCourse::zero, ErrorCourse::gear, ErrorCourse::turn,
                                          ErrorCourse::backlash, ErrorCourse::sag};
 
-/// Residuals minus parameters; a pose has no more than six that are independent.
-[[nodiscard]] double freedom_of(const LinearFit& fit, const PoseGroups& poses) {
-  constexpr double kMost = 6.0;
-  std::vector<double> rows(static_cast<std::size_t>(poses.count), 0.0);
-  for (const RowBlock& block : fit.blocks) {
-    const int pose = poses.of_sample[static_cast<std::size_t>(block.sample)];
-    rows[static_cast<std::size_t>(pose)] += static_cast<double>(block.size);
-  }
-  double sum = 0.0;
-  for (const double of : rows) sum += std::min(kMost, of);
-  return sum - static_cast<double>(fit.size());
-}
-
 /// Beyond this the linearization says nothing, and mistakes have other names.
 [[nodiscard]] bool is_plausible(const ResidualPattern& pattern) {
   constexpr double kTurn = 0.35, kMove = 0.1, kFactor = 0.3;  // radians, metres
@@ -52,12 +39,13 @@ class PatternSearch {
   [[nodiscard]] std::optional<ResidualPattern> find(const Eigen::MatrixXd& effects) {
     constexpr double kFew = 6.0;
     if (freedom_ < kFew || is_exact(fitted_.problem, fitted_.fit)) return {};
-    const std::size_t axes = 3 * fitted_.problem.sensors().size();
+    const std::size_t axes = 4 * fitted_.problem.sensors().size();
     tests_ = static_cast<double>(tracks_.size() * std::size(kJointCourses) + 1 + axes);
     try_joints(effects);
     try_rounding();
     for (const MountedSensor& sensor : fitted_.problem.sensors()) {
-      for (int axis = 0; axis < 3; ++axis) try_axis(sensor.mount().name, axis);
+      for (int axis = 0; axis < 3; ++axis) try_axes(sensor.mount().name, {axis});
+      try_axes(sensor.mount().name, {0, 1, 2});
     }
     return best_;
   }
@@ -107,18 +95,23 @@ class PatternSearch {
     rounded_.noise_left = std::sqrt(std::max(0.0, 1.0 - rounding_ / squares_));
     if (!best_ || rounded_.noise_left < best_->noise_left) best_ = rounded_;
   }
-  void try_axis(const std::string& sensor, int axis) {
+  /// @param axes  of a sensor: one, or all: its scale
+  void try_axes(const std::string& sensor, const std::vector<int>& axes) {
     constexpr double kStep = 1e-6;  // relative
     const auto longer = [&](Sample& sample) {
       for (Observation& seen : sample.observations) {
         if (seen.sensor != sensor) continue;
-        for (Feature& feature : seen.features) feature.point(axis) *= 1.0 + kStep;
+        for (Feature& feature : seen.features) {
+          for (const int axis : axes) feature.point(axis) *= 1.0 + kStep;
+        }
       }
     };
     const Eigen::VectorXd slope = sample_slopes(fitted_, longer, kStep);
     if (slope.isZero(0.0)) return;
     const Fall fall = constant(slope);
-    ResidualPattern pattern{.owner = sensor, .course = ErrorCourse::axis, .axis = axis};
+    ResidualPattern pattern{.owner = sensor,
+                            .course = axes.size() > 1 ? ErrorCourse::scale : ErrorCourse::axis,
+                            .axis = axes.front()};
     pattern.factor = 1.0 + fall.change(0);
     consider(pattern, fall);
   }
@@ -129,13 +122,17 @@ class PatternSearch {
   }
 
   void consider(ResidualPattern pattern, const Fall& fall) {
-    constexpr double kLeft = 0.75, kChance = 1e-6, kSimpler = 0.03;
+    constexpr double kLeft = 0.75, kChance = 1e-6, kSimpler = 0.03, kWrongScale = 0.01;
     const auto q = static_cast<int>(fall.change.size());
     const double x = std::clamp(fall.squares / squares_, 0.0, 1.0);
     const double left = std::sqrt((1.0 - x) * freedom_ / (freedom_ - q));
-    if (left > kLeft || tests_ * chance_of_share(x, q, freedom_) > kChance) return;
-    const bool more = best_ && best_->owner == pattern.owner && q > 1;
-    if (best_ && left > best_->noise_left - (more ? kSimpler : 0.0)) return;
+    const bool is_scale = pattern.course == ErrorCourse::scale;
+    const bool is_large = is_scale && std::abs(pattern.factor - 1.0) > kWrongScale;
+    if (left > kLeft && !is_large) return;
+    if (tests_ * chance_of_share(x, q, freedom_) > kChance) return;
+    const bool more = best_ && best_->owner == pattern.owner && q > 1 && !is_scale;
+    const bool less = best_ && is_scale && best_->course == ErrorCourse::axis;
+    if (best_ && left > best_->noise_left - (more ? kSimpler : 0.0) + (less ? kSimpler : 0.0)) return;
     if (!is_plausible(pattern)) return;
     const Eigen::VectorXd others = fitted_.fit.coordinates.basis * fall.others;
     if (implausible(fitted_.problem, fitted_.free, others)) return;

@@ -8,8 +8,10 @@
 //   a dz/dq             sag: the torque of a weight at the tip
 //   a (q_before - q)    all joints: they still had a part of the way to go
 //   a x                 an axis of a sensor
+//   a (x, y, z)         its scale
 //
-// and fit again.  Positions that are multiples of a step u scatter by u / sqrt(12).  A pattern is reported if chance is excluded over all of them, and if the noise falls to 75 %.
+// and fit again.  Positions that are multiples of a step u scatter by u / sqrt(12).  A pattern is reported if chance is excluded over all of them, and if the noise falls to 75 %; a scale
+// also if it is wrong by a hundredth, however much noise is left: noise is no argument for it.
 // Source: Mooring, Roth, Driels, Fundamentals of Manipulator Calibration, 1991, for the errors of joints.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -25,7 +27,7 @@
 namespace kinecal {
 
 /// What an error depends on.
-enum class ErrorCourse { zero, gear, turn, backlash, sag, lag, axis, rounding };
+enum class ErrorCourse { zero, gear, turn, backlash, sag, lag, axis, scale, rounding };
 
 /// An error that explains residuals.
 struct ResidualPattern {
@@ -33,7 +35,7 @@ struct ResidualPattern {
   ErrorCourse course = ErrorCourse::zero;  ///< of the error
   double size = 0.0;    ///< largest error in the samples, radians or metres; backlash: both sides;
                         ///< lag: share of the way; rounding: the step of the positions
-  double factor = 1.0;  ///< gear: true over measured motion; axis: true over measured length
+  double factor = 1.0;  ///< gear: true over measured motion; axis, scale: true over measured length
   int axis = 0;         ///< of a sensor: 0, 1, 2
   bool turns = true;    ///< size in radians, not metres
   double noise_left = 1.0;  ///< ratio of the noise with the error to that without

@@ -10,6 +10,7 @@
 #include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/plausible_change.ipp"
+#include "kinecal/trust/pose_groups.hpp"
 
 namespace kinecal::detail {
 
@@ -79,6 +80,20 @@ struct Fall {
     term *= x * (b + j) / (j + 1);
   }
   return std::pow(1.0 - x, b) * sum;
+}
+
+/// Residuals minus parameters; a pose has no more than six that are independent, as all features of it share what the
+/// robot did there.
+[[nodiscard]] inline double freedom_of(const LinearFit& fit, const PoseGroups& poses) {
+  constexpr double kMost = 6.0;
+  std::vector<double> rows(static_cast<std::size_t>(poses.count), 0.0);
+  for (const RowBlock& block : fit.blocks) {
+    const int pose = poses.of_sample[static_cast<std::size_t>(block.sample)];
+    rows[static_cast<std::size_t>(pose)] += static_cast<double>(block.size);
+  }
+  double sum = 0.0;
+  for (const double of : rows) sum += std::min(kMost, of);
+  return sum - static_cast<double>(fit.size());
 }
 
 /// True if residuals are only rounding, in their own units: simulated samples without noise.

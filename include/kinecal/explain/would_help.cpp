@@ -1,16 +1,18 @@
 // Definitions of would_help.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/tools/identify/would_help.hpp"
+#include "kinecal/explain/would_help.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/doubts/some_samples.ipp"
 #include "kinecal/text/reading.hpp"
 #include "kinecal/tools/identify/identified_config.hpp"
+#include "kinecal/trust/plausible_change.ipp"
 #include "kinecal/trust/pose_groups.hpp"
 
 namespace kinecal {
@@ -41,6 +43,22 @@ namespace {
     if (is_eye && has_all) return sensor.mount().parameter_prefix();
   }
   return {};
+}
+
+/// Whether residuals are larger than what robots are good to: a thousandth of their size, or a pixel.
+[[nodiscard]] bool matters(const Assessment& step) {
+  constexpr double kOfSize = 1e-3, kPixel = 1.0;
+  return std::any_of(step.noise.begin(), step.noise.end(), [&](const BlockNoise& noise) {
+    const double distance = noise.sigma * std::sqrt(static_cast<double>(noise.components));
+    return distance > (noise.unit == "m" ? kOfSize * step.size : kPixel);
+  });
+}
+
+/// What is left of the noise by what is named already.
+[[nodiscard]] double known_to_leave(const Assessment& step) {
+  return std::min({step.change ? step.change->noise_left : 1.0,
+                   step.pattern ? step.pattern->noise_left : 1.0,
+                   step.lens ? step.lens->noise_left : 1.0});
 }
 
 }  // namespace
@@ -92,9 +110,17 @@ WouldHelp would_help(const Config& config, const Robot& robot, std::span<const S
   return help;
 }
 
-void judge_help(const WouldHelp& help, Judgement& judgement) {
-  constexpr double kLensIsWrong = 0.7;  // of the error on held-out poses
-  if (help.camera.empty() || help.left >= kLensIsWrong) return;
+void judge_help(const WouldHelp& help, const Assessment& step, Judgement& judgement) {
+  constexpr double kLensIsWrong = 0.7, kHeldIsWrong = 0.75;  // of the error on held-out poses
+  if (help.camera.empty()) {
+    if (help.left >= kHeldIsWrong * detail::known_to_leave(step) || !detail::matters(step)) return;
+    judgement.add_causes(Grade::use_with_care,
+                         {fmt::format("{}: what is held is wrong; free it, or is the URDF of another "
+                                      "robot?",
+                                      fmt::join(help.sentences, ", "))});
+    return;
+  }
+  if (help.left >= kLensIsWrong) return;
   judgement.add(Grade::use_with_care,
                 fmt::format("the lens of '{}' is at fault: its intrinsics are not those given; {}",
                             help.camera, fmt::join(help.sentences, ", ")));

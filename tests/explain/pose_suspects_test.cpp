@@ -1,13 +1,13 @@
 // Mistakes in measured poses are named: each is made, and undoing it explains the residuals.
-#include "kinecal/config/doubts/pose_hypotheses.ipp"
+#include "kinecal/explain/pose_suspects.ipp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "kinecal/config/doubts/likely_causes.hpp"
 #include "kinecal/config/read_config.hpp"
+#include "kinecal/explain/explain_fit.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "support/hand_eye_poses.hpp"
 
@@ -54,12 +54,11 @@ std::string cause_of(const std::vector<Sample>& samples) {
   Diagnostics diagnostics;
   const Config config = parse_config(kConfig, "c.yaml", diagnostics);
   diagnostics.throw_if_errors();
-  const auto causes = likely_causes(config, parse_urdf(kUrdf, "hand_eye.urdf"), samples);
-  return causes.empty() ? "" : causes.front();
+  return explain_fit(config, parse_urdf(kUrdf, "hand_eye.urdf"), samples).cause;
 }
 
 /// Makes the poses with which undoing a hypothesis gives the right ones.
-TEST(PoseHypotheses, NameTheirMistakes) {
+TEST(PoseSuspects, NameTheirMistakes) {
   const std::vector<Sample> right = samples_of(test::HandEyePoses(true, 8, 5));
   EXPECT_THAT(cause_of(right), IsEmpty());
   using P = Pose<double>;
@@ -98,7 +97,7 @@ TEST(PoseHypotheses, NameTheirMistakes) {
               HasSubstr("positions multiplied by 100"));
 }
 
-TEST(PoseHypotheses, NamePosesOfAnotherRow) {
+TEST(PoseSuspects, NamePosesOfAnotherRow) {
   std::vector<Sample> samples = samples_of(test::HandEyePoses(true, 8, 5));
   const std::vector<Sample> right = samples;
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) samples[i].poses = right[i + 1].poses;
@@ -106,7 +105,7 @@ TEST(PoseHypotheses, NamePosesOfAnotherRow) {
 }
 
 /// A target that somebody holds has no measured poses.
-TEST(PoseHypotheses, LeaveFittedPosesAlone) {
+TEST(PoseSuspects, LeaveFittedPosesAlone) {
   Config config;
   Sample sample;
   sample.poses = {{"flange_joint", {}}, {"board", {}}};

@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/config/doubts/cause_solver.ipp"
 #include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/explain/scale.ipp"
 #include "kinecal/parameters/joint_models.hpp"
 #include "kinecal/trust/assess.hpp"
 
@@ -47,18 +47,6 @@ struct FreeLength {
     }
   }
   return lengths;
-}
-
-/// The samples with the points of a model multiplied by a factor.
-[[nodiscard]] inline std::vector<Sample> with_scaled(std::vector<Sample> samples,
-                                                     const std::string& model, double factor) {
-  for (Sample& sample : samples) {
-    for (Observation& seen : sample.observations) {
-      if (seen.sensor != model) continue;
-      for (Feature& feature : seen.features) feature.point *= factor;
-    }
-  }
-  return samples;
 }
 
 /// A configuration that frees the zeros of all joints in place of lengths and joint models.  Whole frames are
@@ -92,12 +80,12 @@ struct FreeLength {
   return std::sqrt(squares / static_cast<double>(lengths.size()));
 }
 
-/// The factor of a model's points that undoes nearly all changes of lengths; nullopt if none does.
-[[nodiscard]] inline std::optional<Cause> absorbed_scale(
-    const CauseSolver& solver, const Calibration& calibration, const std::vector<Sample>& samples,
-    const std::string& model, const SolvedSamples& now, const std::vector<FreeLength>& lengths) {
+/// The factor of points that undoes nearly all changes of lengths, as a sentence; nullopt if none does.
+[[nodiscard]] inline std::optional<std::string> absorbed_scale(
+    const Refits& refits, const Suspect& suspect, const Refit& now,
+    const std::vector<FreeLength>& lengths) {
   constexpr double kStep = 0.005;
-  const auto scaled = solved_with(solver, calibration, with_scaled(samples, model, 1.0 + kStep));
+  const auto scaled = refits.with(with_scaled(refits, suspect, 1.0 + kStep));
   if (!scaled) return std::nullopt;
   constexpr double kBuilt = 1.5e-3, kWide = 3.0;  // metres; deviations
   double before = 0.0, slope = 0.0, curvature = 0.0, least_moved = 0.0;
@@ -119,15 +107,13 @@ struct FreeLength {
     return std::nullopt;
   }
   constexpr double kAsGood = 1.3;
-  const auto then = solved_with(solver, calibration, with_scaled(samples, model, 1.0 + s));
+  const auto then = refits.with(with_scaled(refits, suspect, 1.0 + s));
   if (!then || then->cost > kAsGood * now.cost) return std::nullopt;
-  return Cause{
-      before - gain,
-      fmt::format("with the points of '{}' multiplied by {:.4g}, the lengths of the robot "
-                  "change by {:.2g} mm (RMS) in place of {:.2g} mm, and the samples fit as "
-                  "well",
-                  model, 1.0 + s, 1e3 * mean_change(lengths, then->table),
-                  1e3 * mean_change(lengths, now.table))};
+  return fmt::format(
+      "{}multiplied by {:.4g}, the lengths of the robot change by {:.2g} mm (RMS) in place of {:.2g} "
+      "mm, and the samples fit as well",
+      suspect.undone, 1.0 + s, 1e3 * mean_change(lengths, then->table),
+      1e3 * mean_change(lengths, now.table));
 }
 
 }  // namespace kinecal::detail

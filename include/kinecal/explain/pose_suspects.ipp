@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/config/doubts/hypotheses.ipp"
+#include "kinecal/explain/suspect.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/geometry/rpy.hpp"
 
@@ -64,11 +64,11 @@ using Reread = std::function<Matrix3<double>(const Matrix3<double>&)>;
   };
 }
 
-inline void add_pose_hypotheses(const Config& config, std::span<const Sample> samples,
-                                std::vector<Hypothesis>& all) {
+inline void add_pose_suspects(const Config& config, std::span<const Sample> samples,
+                              std::vector<Suspect>& all) {
   for (const std::string& joint : measured_poses(config, samples)) {
     const auto add = [&](const std::string& undone, const auto& change) {
-      all.push_back({undone, [=](Sample& s) {
+      all.push_back({.undone = undone, .correct = [=](Sample& s) {
                        const auto at = s.poses.find(joint);
                        if (at != s.poses.end()) at->second = change(at->second);
                      }});
@@ -89,22 +89,6 @@ inline void add_pose_hypotheses(const Config& config, std::span<const Sample> sa
           [factor](const Pose<double>& pose) {
             return Pose<double>{pose.rotation, factor * pose.translation};
           });
-    }
-    for (const int shift : {-1, 1}) {
-      Hypothesis& shifted = all.emplace_back();
-      shifted.undone = fmt::format("with the poses of '{}' of the sample {}", joint,
-                                   shift < 0 ? "before" : "after");
-      shifted.correct_all = [joint, shift](std::vector<Sample>& s) {
-        const std::vector<Sample> given = s;
-        const bool is_before = shift < 0;
-        if (s.empty()) return;
-        s.erase(is_before ? s.begin() : s.end() - 1);  // it has none
-        for (std::size_t i = 0; i < s.size(); ++i) {
-          const Sample& other = given[is_before ? i : i + 1];
-          const auto from = other.poses.find(joint);
-          if (from != other.poses.end()) s[i].poses[joint] = from->second;
-        }
-      };
     }
   }
 }

@@ -1,0 +1,359 @@
+// Definitions of explain_fit.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/explain/explain_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include "kinecal/evaluation/parallel.hpp"
+#include "kinecal/explain/absorbed_scale.ipp"
+#include "kinecal/explain/in_part.ipp"
+#include "kinecal/explain/refit.ipp"
+#include "kinecal/explain/scale.ipp"
+#include "kinecal/text/first_names.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// What explains a bad fit leaves this part of the cost; what helps leaves that.
+constexpr double kExplains = 0.1, kHelps = 0.25;
+
+/// True for samples that were simulated without noise.
+[[nodiscard]] bool is_exact(const Refit& fit) {
+  return std::all_of(fit.blocks.begin(), fit.blocks.end(), [](const BlockStatistics& block) {
+    return block.after.mean < 1e-6;  // metres, pixels, radians
+  });
+}
+
+/// Suspects that are undone together, and what is left.
+struct Explanation {
+  std::vector<const Suspect*> suspects;
+  Refit after;
+  double cost = 0.0;    ///< in units that they do not shrink
+  std::string text = {};  ///< how they are undone
+
+  [[nodiscard]] SuspectKind kind() const {
+    SuspectKind all = SuspectKind::mistake;
+    for (const Suspect* suspect : suspects) all = std::max(all, suspect->kind);
+    return all;
+  }
+};
+
+/// "with the positions of 'a' and 'b' negated, and with those of ..."
+[[nodiscard]] std::string text_of(const std::vector<const Suspect*>& suspects) {
+  std::vector<std::string> signs;
+  std::string others;
+  for (const Suspect* suspect : suspects) {
+    if (!suspect->sign_of.empty()) {
+      signs.push_back("'" + suspect->sign_of + "'");
+    } else {
+      others += (others.empty() ? "" : " and ") + suspect->undone;
+    }
+  }
+  if (signs.empty()) return others;
+  std::string text = "with the positions of ";
+  for (std::size_t i = 0; i < signs.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == signs.size() ? " and " : ", ") + signs[i];
+  }
+  return text + " negated" + (others.empty() ? "" : " and " + others);
+}
+
+/// Weighs suspects.
+class Weighing {
+ public:
+  Weighing(const Refits& refits, const std::vector<Suspect>& suspects)
+      : refits_(refits), suspects_(suspects), now_(refits.as_given()) {}
+
+  [[nodiscard]] Explained run(bool combines) {
+    if (now_ && is_exact(*now_)) return {};
+    Together alone;
+    for (const Suspect& suspect : suspects_) {
+      suspect.scale ? try_scale(suspect) : alone.push_back({&suspect});
+    }
+    attempt(alone);
+    const bool is_right_as_given = now_ && fits(*now_) && now_->implausible == 0;
+    if (combines && !is_right_as_given && !is_explained()) {
+      in_part_ = suspects_in_part(refits_, suspects_);
+      Together parts;
+      for (const Suspect& suspect : in_part_) parts.push_back({&suspect});
+      attempt(parts);
+      if (!is_explained()) combine();
+    }
+    Explained explained;
+    explained.tried = static_cast<int>(std::ssize(suspects_)) + tried_;
+    if (const auto likely = ranked(); !likely.empty()) {
+      explained.cause = sentence(likely);
+      explained.left = now_ ? likely.front()->cost / now_->cost : 0.0;
+    } else if (const Explanation* best = best_of(all_); now_ && best != nullptr) {
+      if (best->cost < kHelps * now_->cost && best->after.implausible == 0) {
+        explained.helps = best->text + ", " + fall_of(*now_, best->after);
+      }
+    }
+    return explained;
+  }
+
+ private:
+  using Together = std::vector<std::vector<const Suspect*>>;
+
+  /// Fits with suspects undone, each list by itself.
+  void attempt(const Together& lists) { append(refits_, lists, all_); }
+  static void append(const Refits& refits, const Together& lists, std::vector<Explanation>& all) {
+    std::vector<std::optional<Refit>> fits(lists.size());
+    for_each_piece(static_cast<int>(lists.size()), number_of_threads(0), [&](int i, int) {
+      fits[static_cast<std::size_t>(i)] = refits.without(lists[static_cast<std::size_t>(i)]);
+    });
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      if (!fits[i]) continue;
+      double shrinks = 1.0;
+      for (const Suspect* suspect : lists[i]) shrinks *= suspect->shrinks;
+      const double cost = in_measured_units(fits[i]->cost, shrinks);
+      all.push_back({lists[i], *std::move(fits[i]), cost, text_of(lists[i])});
+    }
+  }
+  /// A cost without what smaller lengths take off; larger ones need not make residuals larger.
+  [[nodiscard]] static double in_measured_units(double cost, double factor) {
+    const double by = std::min(1.0, factor);
+    return cost / (by * by);
+  }
+  void try_scale(const Suspect& suspect) {
+    if (!now_) return;
+    auto scaled = scaled_fit(refits_, suspect, *now_, kHelps);
+    if (!scaled) return;
+    const double cost = in_measured_units(scaled->after.cost, scaled->factor);
+    all_.push_back({{&suspect},
+                    std::move(scaled->after),
+                    cost,
+                    suspect.undone + fmt::format("multiplied by {:.4g}", scaled->factor)});
+  }
+
+  /// True if nothing is left to explain: the noise is reached, and parameters are plausible.
+  [[nodiscard]] bool explains(const Explanation& of) const {
+    constexpr double kAsWell = 1.5;  // of the cost, where parameters were implausible
+    if (!fits(of.after) || of.after.implausible > 0) return false;
+    const double part = of.suspects.front()->scale ? kHelps : kExplains;
+    return !now_ || of.cost < (now_->implausible > 0 ? kAsWell : part) * now_->cost;
+  }
+  [[nodiscard]] bool is_explained() const {
+    return std::any_of(all_.begin(), all_.end(),
+                       [&](const Explanation& of) { return explains(of); });
+  }
+
+  /// All combinations of signs, if there are not more than eight joints: combine() finds what helps, else.
+  [[nodiscard]] Together signs_together() const {
+    constexpr std::size_t kMost = 8;
+    std::vector<const Suspect*> signs;
+    for (const Suspect& suspect : suspects_) {
+      if (!suspect.sign_of.empty()) signs.push_back(&suspect);
+    }
+    Together lists;
+    if (signs.size() > kMost) return lists;
+    for (unsigned set = 1; set < (1u << signs.size()); ++set) {
+      std::vector<const Suspect*> together;
+      for (std::size_t i = 0; i < signs.size(); ++i) {
+        if ((set >> i & 1u) != 0) together.push_back(signs[i]);
+      }
+      if (together.size() > 1) lists.push_back(together);
+    }
+    return lists;
+  }
+  /// What helps most, each with each other suspect.
+  /// @param widest  so many of what helps most
+  [[nodiscard]] Together extended(const std::vector<Explanation>& all, std::size_t widest) const {
+    std::vector<const Explanation*> best;
+    for (const Explanation& of : all) {
+      if (!of.suspects.front()->scale) best.push_back(&of);
+    }
+    std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) {
+      return std::pair(a->after.implausible > 0, a->cost) <
+             std::pair(b->after.implausible > 0, b->cost);
+    });
+    best.resize(std::min(best.size(), widest));
+    Together lists;
+    std::set<std::vector<const Suspect*>> seen;
+    for (const Explanation* begin : best) {
+      for (const Suspect& suspect : suspects_) {
+        const auto& list = begin->suspects;
+        if (suspect.scale || std::find(list.begin(), list.end(), &suspect) != list.end()) continue;
+        std::vector<const Suspect*> together = list, same;
+        together.push_back(&suspect);
+        same = together;
+        std::sort(same.begin(), same.end());
+        if (seen.insert(same).second) lists.push_back(together);
+      }
+    }
+    return lists;
+  }
+  /// Combinations: sought with few samples, the best of them fitted to all.
+  void combine() {
+    constexpr std::size_t kFew = 30, kWide = 6, kNarrow = 3, kBest = 8;
+    const Refits few = refits_.with_at_most(kFew);
+    std::vector<Explanation> sought;
+    Together alone;
+    for (const Suspect& suspect : suspects_) {
+      if (!suspect.scale) alone.push_back({&suspect});
+    }
+    const auto fit_best = [&] {  // the shortest of those that are alike
+      std::vector<const Explanation*> best;
+      for (const Explanation& of : sought) {
+        if (of.suspects.size() > 1) best.push_back(&of);
+      }
+      std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) {
+        return std::pair(a->after.implausible > 0, a->cost) <
+               std::pair(b->after.implausible > 0, b->cost);
+      });
+      const auto others = std::find_if(best.begin(), best.end(), [&](const Explanation* of) {
+        return of->cost > alike() * best.front()->cost ||
+               of->after.implausible > best.front()->after.implausible;
+      });
+      std::stable_sort(best.begin(), others, [](const auto* a, const auto* b) {
+        return std::pair(a->suspects.size(), a->after.strain) <
+               std::pair(b->suspects.size(), b->after.strain);
+      });
+      best.resize(std::min(best.size(), kBest));
+      Together lists;
+      for (const Explanation* of : best) lists.push_back(of->suspects);
+      attempt(lists);
+      tried_ = few.fits_made();
+    };
+    append(few, signs_together(), sought);
+    fit_best();
+    if (is_explained()) return;
+    append(few, alone, sought);
+    for (const std::size_t widest : {kWide, kNarrow}) {
+      append(few, extended(sought, widest), sought);
+      fit_best();
+      if (is_explained()) return;
+    }
+  }
+
+  [[nodiscard]] static const Explanation* best_of(const std::vector<Explanation>& all) {
+    const Explanation* best = nullptr;
+    for (const Explanation& of : all) {
+      if (best == nullptr || of.cost < best->cost) best = &of;
+    }
+    return best;
+  }
+  /// Those that reach the noise and fit as well as the best of them; the simplest first.
+  [[nodiscard]] std::vector<const Explanation*> ranked() const {
+    std::vector<const Explanation*> likely;
+    double least = HUGE_VAL;
+    for (const Explanation& of : all_) {
+      if (!explains(of)) continue;
+      likely.push_back(&of);
+      least = std::min(least, of.cost);
+    }
+    constexpr double kExact = 1e-9;  // of the cost: less is rounding
+    if (now_) least = std::max(least, kExact * now_->cost);
+    std::erase_if(likely, [&](const Explanation* of) { return of->cost > alike() * least; });
+    if (now_ && now_->implausible > 0) {
+      std::erase_if(likely, [&](const Explanation* of) { return is_absorbed(*of); });
+    }
+    constexpr double kMore = 4.0, kSmall = 1.0;  // of the least strain; of plausible changes
+    double relaxed = HUGE_VAL;
+    for (const Explanation* of : likely) relaxed = std::min(relaxed, of->after.strain);
+    std::erase_if(likely, [&](const Explanation* of) {
+      return of->after.strain > kMore * relaxed + kSmall;
+    });
+    std::stable_sort(likely.begin(), likely.end(), [](const auto* a, const auto* b) {
+      return std::tuple(a->suspects.size(), a->kind(), a->cost) <
+             std::tuple(b->suspects.size(), b->kind(), b->cost);
+    });
+    return likely;
+  }
+  /// True if unknown poses take up the zero that is moved: then it is only another start of the fit.
+  [[nodiscard]] bool is_absorbed(const Explanation& of) const {
+    constexpr double kSame = 1e-3, kTurn = 0.02;  // of the cost; radians
+    const std::string& joint = of.suspects.front()->zero_of;
+    if (of.suspects.size() != 1 || joint.empty()) return false;
+    const Suspect turned{.undone = {}, .correct = [&](Sample& sample) {
+                           if (double* q = position_in(sample, joint)) *q += kTurn;
+                         }};
+    const auto cost = refits_.cost_of_poses({&turned}, *now_);
+    return cost && std::abs(*cost - now_->cost) < kSame * now_->cost;
+  }
+  /// Ratio of costs that are alike: three standard deviations of the sum of squares of a fit to the noise, whose
+  /// residuals err together within a sample.
+  [[nodiscard]] double alike() const {
+    constexpr double kSure = 3.0, kOfSample = 6.0;
+    const double rows = kOfSample * std::max(1.0, static_cast<double>(refits_.some().size()));
+    return 1.0 + kSure * std::sqrt(2.0 / rows);
+  }
+
+  [[nodiscard]] std::string sentence(const std::vector<const Explanation*>& likely) const {
+    constexpr std::size_t kOthers = 2;
+    const Explanation& first = *likely.front();
+    std::string text =
+        first.text + ", " +
+        (!now_ ? solved_text(first.after)
+         : first.cost < kExplains * now_->cost || first.suspects.front()->scale
+             ? fall_of(*now_, first.after)
+             : "no parameter changes by more than is plausible, and the samples fit as well");
+    std::string others;
+    for (std::size_t i = 1; i < likely.size() && i <= kOthers; ++i) {
+      others += (i == 1 ? "" : ", or ") + likely[i]->text;
+    }
+    if (others.empty()) return text;
+    return text + "; these samples do not tell it from " + others +
+           (likely.size() > kOthers + 1
+                ? fmt::format(", and {} more", likely.size() - kOthers - 1)
+                : "");
+  }
+
+  const Refits& refits_;
+  const std::vector<Suspect>& suspects_;
+  std::vector<Suspect> in_part_;
+  std::optional<Refit> now_;
+  std::vector<Explanation> all_;
+  int tried_ = 0;  ///< combinations
+};
+
+}  // namespace
+}  // namespace detail
+
+Explained explain_fit(const Config& config, const Robot& robot, std::span<const Sample> samples,
+                      const ExplainOptions& options) {
+  const Calibrator solve = options.solve ? options.solve : detail::plain_calibrator();
+  const detail::Refits refits(config, robot, samples, solve);
+  std::vector<Suspect> suspects = suspects_of(config, robot, refits.some());
+  suspects.insert(suspects.end(), options.own.begin(), options.own.end());
+  return detail::Weighing(refits, suspects).run(options.combines);
+}
+
+std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
+                                      std::span<const Sample> samples,
+                                      const ParameterTable& solution, const Assessment& last) {
+  const Calibrator solve = detail::plain_calibrator();
+  const detail::Refits refits(config, robot, samples, solve, &solution);
+  const std::optional<detail::Refit> now = refits.as_given();
+  if (!now || detail::is_exact(*now)) return {};
+  if (auto found = detail::scale_sentences(refits, *now, robot); !found.empty()) return found;
+  const std::vector<detail::FreeLength> lengths = detail::free_lengths(robot, solution, last);
+  if (lengths.size() < 2) return {};
+  std::vector<std::string> found;
+  for (const Suspect& suspect : suspects_of(config, robot, refits.some())) {
+    if (!suspect.scale) continue;
+    auto scaled = detail::absorbed_scale(refits, suspect, *now, lengths);
+    if (scaled) found.push_back(*std::move(scaled));
+  }
+  if (!found.empty()) return found;
+  const Config zeros = detail::with_zeros_for_lengths(config, robot);
+  const detail::Refits with_zeros(zeros, robot, samples, solve);
+  const std::optional<detail::Refit> then = with_zeros.as_given();
+  if (!then) return {};
+  std::vector<std::string> names;
+  for (const detail::FreeLength& length : lengths) names.push_back(length.name);
+  found = detail::scale_sentences(with_zeros, *then, robot);
+  for (std::string& sentence : found) {
+    sentence += " with zeros in place of " + first_names(names) + ", which may have absorbed it";
+  }
+  return found;
+}
+
+}  // namespace kinecal
