@@ -25,9 +25,9 @@ int main(int argc, char** argv) try {
   for (Sample& sample : setup.samples) {  // as the driver does
     if (double* q = position_in(sample, joint)) *q /= 0.8;
   }
-  const CalibratedRobot calibrated =
-      calibrate_robot(std::move(setup), {.suspects = {of_motor}});
-  for (const std::string& reason : calibrated.judgement.reasons) std::printf("%s\n", reason.c_str());
+  const CalibratedRobot calibrated = calibrate_robot(std::move(setup), {.suspects = {of_motor}});
+  for (const std::string& reason : calibrated.judgement.reasons)
+    std::printf("%s\n", reason.c_str());
   return calibrated.is_usable() ? 0 : 2;
 } catch (const std::exception& error) {
   return std::fprintf(stderr, "error: %s\n", error.what()), 1;

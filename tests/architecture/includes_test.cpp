@@ -21,9 +21,10 @@ const fs::path kHeaders = fs::path(test::source_folder()) / "include/kinecal";
 
 /// A folder may include those before it.
 const std::vector<std::string> kFolders = {
-    "text",    "geometry",   "kinematics", "parameters", "samples", "sensors", "errors",
-    "problem", "evaluation", "crate",      "testing",    "solve",   "trust",   "capture",
-    "study",   "files",      "config",     "robots",     "report",  "tools",   "explain", "procedure"};
+    "text",   "geometry", "kinematics", "parameters", "samples", "sensors",
+    "errors", "problem",  "evaluation", "crate",      "testing", "solve",
+    "trust",  "capture",  "study",      "files",      "config",  "robots",
+    "report", "tools",    "explain",    "procedure"};
 /// For tests: no umbrella header of the whole tree includes it.
 const std::string kForTests = "testing";
 

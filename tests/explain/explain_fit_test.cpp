@@ -251,7 +251,8 @@ TEST_F(ExplainFit, AProgramHasItsOwnSuspects) {
                      .kind = SuspectKind::property,
                      .correct = [](Sample& s) { *position_in(s, "roll") *= 1.25; }};
   const std::vector<Suspect> own = {gear};
-  EXPECT_THAT(explained({.own = own}).cause, testing::StartsWith("with the gear of 'roll' of 1.25"));
+  EXPECT_THAT(explained({.own = own}).cause,
+              testing::StartsWith("with the gear of 'roll' of 1.25"));
 }
 
 }  // namespace

@@ -22,7 +22,9 @@ struct Named {
   std::string expected;  ///< regular expression
 };
 
-std::string joint_name(const Recording& of, std::size_t j) { return of.samples[0].joint_names[j]; }
+std::string joint_name(const Recording& of, std::size_t j) {
+  return of.samples[0].joint_names[j];
+}
 
 test::Change each(const std::function<void(Sample&)>& change) {
   return [=](Recording& of) { std::for_each(of.samples.begin(), of.samples.end(), change); };
@@ -33,7 +35,8 @@ test::Change rows(const std::function<std::size_t(std::size_t i, std::size_t cou
   return [=](Recording& of) {
     const std::vector<Sample> right = of.samples;
     for (std::size_t i = 0; i < right.size(); ++i)
-      of.samples[i].joint_positions = right[std::min(from(i, right.size()), right.size() - 1)].joint_positions;
+      of.samples[i].joint_positions =
+          right[std::min(from(i, right.size()), right.size() - 1)].joint_positions;
   };
 }
 
@@ -83,21 +86,25 @@ std::vector<Named> mistakes(const Recording& of) {
                  "of the sample before"});
   all.push_back({"neighbours", rows([](std::size_t i, std::size_t) { return i ^ 1u; }),
                  "neighbouring samples"});
-  all.push_back({"sign_in_a_third", [](Recording& r) {
+  all.push_back({"sign_in_a_third",
+                 [](Recording& r) {
                    for (std::size_t s = 0; s < r.samples.size(); s += 3)
                      r.samples[s].joint_positions[1] *= -1.0;
                  },
                  name(1) + " negated in [0-9]+ of"});
-  all.push_back({"millimetres", test::points([](Vector3<double>& p, double) { p *= 1e3; }),
-                 "millimetres"});
+  all.push_back(
+      {"millimetres", test::points([](Vector3<double>& p, double) { p *= 1e3; }), "millimetres"});
   all.push_back({"left_handed", test::points([](Vector3<double>& p, double) { p.x() *= -1.0; }),
                  "left-handed|mirrored"});
   all.push_back({"twice_as_large", test::scaled(1.9), "multiplied by 0.5[0-9]"});
-  all.push_back({"middle_third", test::joint(1, [](double, double, double part) {
-                   return part > 0.33 && part < 0.67 ? 1.5 * test::kOneDegree : 0.0;
-                 }),
+  all.push_back({"middle_third",
+                 test::joint(1,
+                             [](double, double, double part) {
+                               return part > 0.33 && part < 0.67 ? 1.5 * test::kOneDegree : 0.0;
+                             }),
                  "changed.*from .* until|elsewhere.* samples"});
-  all.push_back({"two_robots", [](Recording& r) {
+  all.push_back({"two_robots",
+                 [](Recording& r) {
                    std::mt19937 random(8);
                    const double apart[] = {0.9, -1.2, 1.4, -0.8, 1.1};
                    for (Sample& s : r.samples) {
@@ -142,8 +149,10 @@ TEST_P(NamedCauses, AreTheRightOnes) {
     named += is_right ? 1 : 0;
     wrong += is_wrong ? 1 : 0;
     std::printf("%-12s %-16s %-6s %-14s %s\n", right.name.c_str(), mistake.name.c_str(),
-                is_right ? "right" : is_wrong ? "WRONG" : "-", to_string(grade).data(),
-                said.substr(0, is_wrong ? 900 : 150).c_str());
+                is_right   ? "right"
+                : is_wrong ? "WRONG"
+                           : "-",
+                to_string(grade).data(), said.substr(0, is_wrong ? 900 : 150).c_str());
     EXPECT_NE(grade, Grade::good) << mistake.name;
   }
   std::printf("%s: of %d mistakes %d named first, %d wrongly\n", right.name.c_str(), shown, named,

@@ -121,7 +121,8 @@ TEST(Judge, NamesAJointThatExplainsTheResiduals) {
       .owner = "elbow", .course = ErrorCourse::backlash, .size = 0.0175, .noise_left = 0.4};
   expect(judged.judgement(), Grade::use_with_care,
          "with a backlash of 'elbow' of 1 deg, the noise falls to 40 %");
-  judged.assessments[0].change = RecordingChange{.owner = "stand", .sample = 12, .noise_left = 0.3, .metres = 0.05, .radians = 0.0};
+  judged.assessments[0].change = RecordingChange{
+      .owner = "stand", .sample = 12, .noise_left = 0.3, .metres = 0.05, .radians = 0.0};
   expect(judged.judgement(), Grade::do_not_use, "'stand' seems to have changed");
 }
 
@@ -137,11 +138,17 @@ TEST(Judge, NamesASigmaInAnotherUnit) {
 
 TEST(Judge, NamesWhatChangedOrDriftedWithItsSize) {
   Judged judged;
-  judged.assessments[0].change = RecordingChange{.owner = "stand", .sample = 12, .noise_left = 0.4, .drifts = true, .metres = 0.0113, .radians = 0.01};
+  judged.assessments[0].change = RecordingChange{.owner = "stand",
+                                                 .sample = 12,
+                                                 .noise_left = 0.4,
+                                                 .drifts = true,
+                                                 .metres = 0.0113,
+                                                 .radians = 0.01};
   expect(judged.judgement(), Grade::use_with_care,
          "'stand' drifts by 11.3 mm and 0.573 deg from the first sample to the last: with an even "
          "drift, the noise falls to 40 %");
-  judged.assessments[0].change = RecordingChange{.owner = "stand", .sample = 12, .noise_left = 0.2, .metres = 0.05, .radians = 6e-15};
+  judged.assessments[0].change = RecordingChange{
+      .owner = "stand", .sample = 12, .noise_left = 0.2, .metres = 0.05, .radians = 6e-15};
   expect(judged.judgement(), Grade::do_not_use,
          "'stand' seems to have changed by 50 mm during the recording, before ");
 }

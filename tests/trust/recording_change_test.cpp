@@ -95,7 +95,8 @@ TEST(RecordingChange, IsNoneOfAJointThatScatters) {
 
 TEST(RecordingChange, OfAPartInTheMiddleIsFoundWithItsEnds) {
   test::NoisyScene scene(48);
-  test::misread(scene, "elbow", [](std::size_t s, double) { return s >= 15 && s < 33 ? -0.03 : 0.0; });
+  test::misread(scene, "elbow",
+                [](std::size_t s, double) { return s >= 15 && s < 33 ? -0.03 : 0.0; });
   const auto found = change_in(scene);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->owner, "elbow");

@@ -110,7 +110,8 @@ struct FreeLength {
   const auto then = refits.with(with_scaled(refits, suspect, 1.0 + s));
   if (!then || then->cost > kAsGood * now.cost) return std::nullopt;
   return fmt::format(
-      "{}multiplied by {:.4g}, the lengths of the robot change by {:.2g} mm (RMS) in place of {:.2g} "
+      "{}multiplied by {:.4g}, the lengths of the robot change by {:.2g} mm (RMS) in place of "
+      "{:.2g} "
       "mm, and the samples fit as well",
       suspect.undone, 1.0 + s, 1e3 * mean_change(lengths, then->table),
       1e3 * mean_change(lengths, now.table));

@@ -36,7 +36,7 @@ constexpr double kExplains = 0.1, kHelps = 0.25;
 struct Explanation {
   std::vector<const Suspect*> suspects;
   Refit after;
-  double cost = 0.0;    ///< in units that they do not shrink
+  double cost = 0.0;      ///< in units that they do not shrink
   std::string text = {};  ///< how they are undone
 
   [[nodiscard]] SuspectKind kind() const {
@@ -258,9 +258,8 @@ class Weighing {
     constexpr double kMore = 4.0, kSmall = 1.0;  // of the least strain; of plausible changes
     double relaxed = HUGE_VAL;
     for (const Explanation* of : likely) relaxed = std::min(relaxed, of->after.strain);
-    std::erase_if(likely, [&](const Explanation* of) {
-      return of->after.strain > kMore * relaxed + kSmall;
-    });
+    std::erase_if(
+        likely, [&](const Explanation* of) { return of->after.strain > kMore * relaxed + kSmall; });
     std::stable_sort(likely.begin(), likely.end(), [](const auto* a, const auto* b) {
       return std::tuple(a->suspects.size(), a->kind(), a->cost) <
              std::tuple(b->suspects.size(), b->kind(), b->cost);
@@ -301,9 +300,8 @@ class Weighing {
     }
     if (others.empty()) return text;
     return text + "; these samples do not tell it from " + others +
-           (likely.size() > kOthers + 1
-                ? fmt::format(", and {} more", likely.size() - kOthers - 1)
-                : "");
+           (likely.size() > kOthers + 1 ? fmt::format(", and {} more", likely.size() - kOthers - 1)
+                                        : "");
   }
 
   const Refits& refits_;

@@ -34,9 +34,9 @@ struct Explained {
   /// What reaches the noise: "with the positions of 'elbow' and 'wrist' exchanged, the mean residual of 'hand_eye' falls
   /// from 93 mm to 0.11 mm"; what explains the same follows in the sentence.  Empty: nothing does.
   std::string cause;
-  std::string helps;    ///< what helps most, if nothing reaches the noise and it halves the residuals
-  int tried = 0;        ///< suspects and their combinations
-  double left = 1.0;    ///< of the cost, with the cause undone
+  std::string helps;  ///< what helps most, if nothing reaches the noise and it halves the residuals
+  int tried = 0;      ///< suspects and their combinations
+  double left = 1.0;  ///< of the cost, with the cause undone
 };
 
 /// What is weighed.

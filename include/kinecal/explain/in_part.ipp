@@ -159,8 +159,7 @@ struct Concentrated {
 [[nodiscard]] inline std::vector<Suspect> suspects_in_part(const Refits& refits,
                                                            const std::vector<Suspect>& suspects) {
   // The typical one is the median of the best 60 percent: noise alone reaches ten times that.
-  constexpr double kBad = 50.0, kMended = 25.0, kMost = 0.8, kFewestPart = 0.03,
-                   kMuchBetter = 0.01;
+  constexpr double kBad = 50.0, kMended = 25.0, kMost = 0.8, kFewestPart = 0.03, kMuchBetter = 0.01;
   std::vector<Suspect> found, of_rows;
   const auto agreed = concentrated(refits);
   if (!agreed) return found;

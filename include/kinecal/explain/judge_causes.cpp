@@ -58,9 +58,8 @@ void judge_fit(const CalibrationInput& input, std::span<const Sample> all,
                       is_implausible(input.calibration.steps.back(), judged.result.table);
   const bool leaves_out = many_are_left_out(input.samples.size(), all.size());
   if (!is_bad && !leaves_out && !has_unknown_noise(judged.assessments.back())) return;
-  const Explained found =
-      explain_fit(input.config, input.robot, leaves_out ? all : input.samples,
-                  {.own = own, .combines = is_bad || leaves_out, .solve = {}});
+  const Explained found = explain_fit(input.config, input.robot, leaves_out ? all : input.samples,
+                                      {.own = own, .combines = is_bad || leaves_out, .solve = {}});
   if (!found.cause.empty()) {
     const bool refuse = is_bad || found.left < kThird;
     judged.judgement.add_causes(refuse ? Grade::do_not_use : Grade::use_with_care,

@@ -28,9 +28,11 @@ struct Refit {
   double cost = 0.0;
   std::vector<BlockStatistics> blocks;
   ParameterTable table;
-  double size = 0.0;    ///< of the robot, metres
-  int implausible = 0;  ///< parameters that ended farther from where they began than robots are wrong
-  double strain = 0.0;  ///< sum of squared changes of parameters, each over its largest plausible one
+  double size = 0.0;  ///< of the robot, metres
+  int implausible =
+      0;  ///< parameters that ended farther from where they began than robots are wrong
+  double strain =
+      0.0;  ///< sum of squared changes of parameters, each over its largest plausible one
 };
 
 /// True if an error block's residuals are distances.

@@ -37,7 +37,8 @@ struct Suspect {
   std::function<void(Config&)> correct_config = {};
   /// In one sample, multiplies lengths by a factor that the fit chooses.
   std::function<void(Sample&, double factor)> scale = {};
-  double shrinks = 1.0;      ///< factor on lengths, and so on residuals, which would pass for a better fit
+  double shrinks =
+      1.0;  ///< factor on lengths, and so on residuals, which would pass for a better fit
   std::string sign_of = {};  ///< joint whose sign it is: signs are tried together, too
   std::string zero_of = {};  ///< joint whose zero it moves
 };

@@ -50,16 +50,16 @@ void add_orders(const std::vector<UsedJoint>& joints, Suspects& all) {
   const auto add = [&](const std::string& undone, std::vector<std::string> from,
                        std::vector<std::string> to) {
     if (from == to) return;
-    all.push_back({.undone = undone,
-                   .correct = [from = std::move(from), to = std::move(to)](Sample& s) {
-                     const Sample before = s;
-                     for (std::size_t i = 0; i < from.size(); ++i) {
-                       double* q = position_in(s, to[i]);
-                       if (const auto value = before.position(from[i]); q != nullptr && value) {
-                         *q = *value;
-                       }
-                     }
-                   }});
+    all.push_back(
+        {.undone = undone, .correct = [from = std::move(from), to = std::move(to)](Sample& s) {
+           const Sample before = s;
+           for (std::size_t i = 0; i < from.size(); ++i) {
+             double* q = position_in(s, to[i]);
+             if (const auto value = before.position(from[i]); q != nullptr && value) {
+               *q = *value;
+             }
+           }
+         }});
   };
   add("with positions taken in alphabetical order of the joints", names, sorted);
   add("with positions taken in the order of the chain, names being alphabetical", sorted, names);
@@ -89,9 +89,10 @@ void add_angles(const std::vector<UsedJoint>& joints, Suspects& all) {
                                            "is a {} turn off",
                                            degrees, name, degrees == 180 ? "half" : "quarter"),
                      .kind = SuspectKind::zero,
-                     .correct = [name, by = degrees * kDegree](Sample& s) {
-                       if (double* q = position_in(s, name)) *q += by;
-                     },
+                     .correct =
+                         [name, by = degrees * kDegree](Sample& s) {
+                           if (double* q = position_in(s, name)) *q += by;
+                         },
                      .zero_of = name});
     }
   }
@@ -121,16 +122,16 @@ void add_couplings(const Config& config, const Robot& robot, const std::vector<U
   }
   for (const auto& pair : pairs) {
     for (const double sign : {1.0, -1.0}) {
-      all.push_back(
-          {.undone = fmt::format("with the positions of '{}', {} which those of '{}' are {}",
-                                 pair.first, sign > 0.0 ? "to" : "from", pair.second,
-                                 sign > 0.0 ? "added: it is coupled, or measured against the horizontal"
-                                            : "subtracted: it is coupled"),
-           .kind = SuspectKind::property,
-           .correct = [pair, sign](Sample& s) {
-             double *q = position_in(s, pair.first), *other = position_in(s, pair.second);
-             if (q != nullptr && other != nullptr) *q += sign * *other;
-           }});
+      all.push_back({.undone = fmt::format(
+                         "with the positions of '{}', {} which those of '{}' are {}", pair.first,
+                         sign > 0.0 ? "to" : "from", pair.second,
+                         sign > 0.0 ? "added: it is coupled, or measured against the horizontal"
+                                    : "subtracted: it is coupled"),
+                     .kind = SuspectKind::property,
+                     .correct = [pair, sign](Sample& s) {
+                       double *q = position_in(s, pair.first), *other = position_in(s, pair.second);
+                       if (q != nullptr && other != nullptr) *q += sign * *other;
+                     }});
     }
   }
 }
@@ -168,27 +169,25 @@ void add_features(const Config& config, Suspects& all) {
       all.push_back({.undone = of + undone, .correct = points(change), .shrinks = shrinks});
     };
     if (pixels.contains(name)) continue;
-    const std::pair<const char*, double> units[] = {{"taken as millimetres", 1e-3},
-                                                    {"taken as centimetres", 1e-2},
-                                                    {"taken as inches", 0.0254},
-                                                    {"multiplied by 10", 1e1},
-                                                    {"multiplied by 100", 1e2},
-                                                    {"multiplied by 1000", 1e3}};
+    const std::pair<const char*, double> units[] = {
+        {"taken as millimetres", 1e-3}, {"taken as centimetres", 1e-2},
+        {"taken as inches", 0.0254},    {"multiplied by 10", 1e1},
+        {"multiplied by 100", 1e2},     {"multiplied by 1000", 1e3}};
     for (const auto& [undone, factor] : units) {
       const double by = factor;
-      add(undone, [by](const Point& p) -> Point { return by * p; }, by);
+      add(
+          undone, [by](const Point& p) -> Point { return by * p; }, by);
     }
     add("mirrored, as if its axes were left-handed",
         [](const Point& p) { return Point(p.x(), -p.y(), p.z()); });
     add("turned from the axes of a link (x forward) to those of a camera (z forward)",
         [](const Point& p) { return Point(-p.y(), -p.z(), p.x()); });
-    all.push_back({.undone = of,
-                   .kind = SuspectKind::property,
-                   .scale = [each](Sample& s, double factor) {
-                     each(s, [factor](Observation& seen) {
-                       for (Feature& feature : seen.features) feature.point *= factor;
-                     });
-                   }});
+    all.push_back(
+        {.undone = of, .kind = SuspectKind::property, .scale = [each](Sample& s, double factor) {
+           each(s, [factor](Observation& seen) {
+             for (Feature& feature : seen.features) feature.point *= factor;
+           });
+         }});
   }
 }
 
@@ -199,19 +198,20 @@ void add_models(const Config& config, Suspects& all) {
     for (std::size_t b = a + 1; b < models.size(); ++b) {
       const ModelConfig &first = models[a], &second = models[b];
       if (first.frame != second.frame) {
-        all.push_back({.undone = fmt::format("with the frames of the models '{}' and '{}' exchanged",
-                                             first.name, second.name),
-                       .correct_config = [first, second](Config& changed) {
-                         for (StepConfig& step : changed.steps) {
-                           for (ModelConfig& model : step.models) {
-                             if (model.name == first.name) {
-                               model.frame = second.frame;
-                             } else if (model.name == second.name) {
-                               model.frame = first.frame;
-                             }
-                           }
-                         }
-                       }});
+        all.push_back(
+            {.undone = fmt::format("with the frames of the models '{}' and '{}' exchanged",
+                                   first.name, second.name),
+             .correct_config = [first, second](Config& changed) {
+               for (StepConfig& step : changed.steps) {
+                 for (ModelConfig& model : step.models) {
+                   if (model.name == first.name) {
+                     model.frame = second.frame;
+                   } else if (model.name == second.name) {
+                     model.frame = first.frame;
+                   }
+                 }
+               }
+             }});
       }
       all.push_back({.undone = fmt::format("with the observations of '{}' and '{}' exchanged",
                                            first.name, second.name),
@@ -234,16 +234,16 @@ void add_rows(const Config& config, const std::vector<UsedJoint>& joints,
   using Take = std::function<void(Sample&, const Sample& from)>;
   const auto add = [&](const std::string& what, const Take& take) {
     for (const int shift : {-1, 1}) {
-      all.push_back({.undone = fmt::format("with {} of the sample {}", what,
-                                           shift < 0 ? "before" : "after"),
-                     .correct_all = [take, shift](std::vector<Sample>& s) {
-                       const std::vector<Sample> given = s;
-                       const auto count = std::ssize(s);
-                       for (std::ptrdiff_t i = 0; i < count; ++i) {
-                         const std::ptrdiff_t from = std::clamp<std::ptrdiff_t>(i + shift, 0, count - 1);
-                         take(s[static_cast<std::size_t>(i)], given[static_cast<std::size_t>(from)]);
-                       }
-                     }});
+      all.push_back(
+          {.undone = fmt::format("with {} of the sample {}", what, shift < 0 ? "before" : "after"),
+           .correct_all = [take, shift](std::vector<Sample>& s) {
+             const std::vector<Sample> given = s;
+             const auto count = std::ssize(s);
+             for (std::ptrdiff_t i = 0; i < count; ++i) {
+               const std::ptrdiff_t from = std::clamp<std::ptrdiff_t>(i + shift, 0, count - 1);
+               take(s[static_cast<std::size_t>(i)], given[static_cast<std::size_t>(from)]);
+             }
+           }});
     }
   };
   for (const std::string& joint : measured_poses(config, samples)) {

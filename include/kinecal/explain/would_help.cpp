@@ -114,10 +114,11 @@ void judge_help(const WouldHelp& help, const Assessment& step, Judgement& judgem
   constexpr double kLensIsWrong = 0.7, kHeldIsWrong = 0.75;  // of the error on held-out poses
   if (help.camera.empty()) {
     if (help.left >= kHeldIsWrong * detail::known_to_leave(step) || !detail::matters(step)) return;
-    judgement.add_causes(Grade::use_with_care,
-                         {fmt::format("{}: what is held is wrong; free it, or is the URDF of another "
-                                      "robot?",
-                                      fmt::join(help.sentences, ", "))});
+    judgement.add_causes(
+        Grade::use_with_care,
+        {fmt::format("{}: what is held is wrong; free it, or is the URDF of another "
+                     "robot?",
+                     fmt::join(help.sentences, ", "))});
     return;
   }
   if (help.left >= kLensIsWrong) return;

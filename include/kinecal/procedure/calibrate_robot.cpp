@@ -222,8 +222,8 @@ void explain(CalibratedRobot& calibrated, const CalibrationOptions& options) {
   const PreparedCalibration& setup = calibrated.setup;
   Findings& findings = calibrated;
   const bool frees_some = !setup.calibration.steps.empty();
-  const CalibrationInput input{*setup.config,      setup.robot,        setup.urdf_text, setup.urdf,
-                               calibrated.samples, setup.calibration};
+  const CalibrationInput input{*setup.config, setup.robot,        setup.urdf_text,
+                               setup.urdf,    calibrated.samples, setup.calibration};
   const int causes = findings.judgement.causes;
   if (frees_some) {
     judge_causes(input, without(setup.samples, options.exclude), findings, options.suspects);

@@ -61,10 +61,10 @@ struct CalibrationOptions {
   std::vector<int> exclude = {};       ///< numbers of samples to leave out, from 1
   std::vector<std::string> hold = {};  ///< parameters, frames or candidates that keep their values
   Search search = Search::if_open;
-  bool geometry_only = false;  ///< a search frees no joint models, which a URDF cannot hold
-  int draw = 3000;             ///< of calibrate_log(): samples on which a log is judged
+  bool geometry_only = false;          ///< a search frees no joint models, which a URDF cannot hold
+  int draw = 3000;                     ///< of calibrate_log(): samples on which a log is judged
   std::vector<Suspect> suspects = {};  ///< what may be wrong beside what kinecal suspects
-  Progress progress = {};      ///< called in each iteration; what it throws ends the calibration
+  Progress progress = {};  ///< called in each iteration; what it throws ends the calibration
 };
 
 /// A setup that is ready to be solved, and what was found in it.

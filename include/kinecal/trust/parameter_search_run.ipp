@@ -111,7 +111,7 @@ std::vector<int> ParameterSearch::like(const Whole& without, const Candidates& c
 
 void ParameterSearch::run(const std::vector<int>& base, const Candidates& candidates,
                           std::vector<int>& chosen) const {
-  constexpr double kFar = 0.5;  // of the sum of squares: linearize again
+  constexpr double kFar = 0.5;               // of the sum of squares: linearize again
   constexpr Evidence kOfSearch{0.2, kSure};  // what is superfluous is held again
   const auto columns = [&](const std::vector<int>& of) {
     return detail::columns_of(base, candidates, of);

@@ -45,9 +45,10 @@ struct CourseSums {
   const int few = std::max(3, (samples + 9) / 10);
   const Eigen::Index n = fit.size();
   const int parts = std::min(kParts, samples);
-  const CourseSums none{{}, Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n),
-                        Eigen::VectorXd::Zero(n)};
-  std::vector<CourseSums> before(static_cast<std::size_t>(parts) + 1, none);  // of all samples before a part
+  const CourseSums none{
+      {}, Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+  std::vector<CourseSums> before(static_cast<std::size_t>(parts) + 1,
+                                 none);  // of all samples before a part
   CourseSums drift = none;
   drift.course.kind = Course::Kind::drifts;
   for (const RowBlock& block : fit.blocks) {
@@ -75,10 +76,8 @@ struct CourseSums {
     const CourseSums &a = before[static_cast<std::size_t>(part)],
                      &b = before[static_cast<std::size_t>(end)];
     const Eigen::MatrixXd information = b.information - a.information;
-    return CourseSums{{kind, first_of(part), first_of(end)},
-                      information,
-                      information,
-                      b.gradient - a.gradient};
+    return CourseSums{
+        {kind, first_of(part), first_of(end)}, information, information, b.gradient - a.gradient};
   };
   std::vector<CourseSums> all;
   for (int p = 0; p < parts; ++p) {
@@ -121,8 +120,9 @@ struct CourseSums {
   Eigen::VectorXd falls = Eigen::VectorXd::Zero(samples);
   for (const RowBlock& block : fit.blocks) {
     const auto r = fit.residual.segment(block.first, block.size);
-    const Eigen::VectorXd after = r + fit.jacobian.middleRows(block.first, block.size) *
-                                          (fall.others + course.course.at(block.sample, samples) * own);
+    const Eigen::VectorXd after =
+        r + fit.jacobian.middleRows(block.first, block.size) *
+                (fall.others + course.course.at(block.sample, samples) * own);
     falls(block.sample) +=
         fit.loss.segment(block.first, block.size).dot(r.cwiseAbs2() - after.cwiseAbs2());
   }
@@ -168,8 +168,7 @@ inline void set_size(const AnyProblem& problem, const FreeSet& free,
     const int p = free.parameters()[static_cast<std::size_t>(columns[i])];
     const std::string& unit = problem.table()[p].unit;
     double& length = unit == "m" ? change.metres : change.radians;
-    if (unit == "m" || unit == "rad")
-      length = std::hypot(length, by(static_cast<Eigen::Index>(i)));
+    if (unit == "m" || unit == "rad") length = std::hypot(length, by(static_cast<Eigen::Index>(i)));
   }
 }
 

@@ -30,15 +30,17 @@ namespace kinecal {
 
 /// A change during the recording.
 struct RecordingChange {
-  std::string owner;        ///< joint, frame, sensor or error block that changed; empty: the zeros of all joints
+  std::string
+      owner;  ///< joint, frame, sensor or error block that changed; empty: the zeros of all joints
   int sample = 0;           ///< first one after the change, by number in the problem
   int end = 0;              ///< first one that is as before again; 0: all that follow have changed
   double noise_left = 1.0;  ///< ratio of the noise with the change to that without
-  std::vector<int> here_and_there = {};  ///< samples with other parameters, if they are no part in one piece
-  bool drifts = false;      ///< it changes evenly from the first sample to the last
-  double metres = 0.0;      ///< length of the change of its parameters in metres, in all
-  double radians = 0.0;     ///< the same of those in radians
-  bool by_pose = false;     ///< the order of samples follows their poses: the pose may explain it
+  std::vector<int> here_and_there =
+      {};                ///< samples with other parameters, if they are no part in one piece
+  bool drifts = false;   ///< it changes evenly from the first sample to the last
+  double metres = 0.0;   ///< length of the change of its parameters in metres, in all
+  double radians = 0.0;  ///< the same of those in radians
+  bool by_pose = false;  ///< the order of samples follows their poses: the pose may explain it
 };
 
 /// Whether the course of a change follows the joint positions: then an error that depends on the pose explains

@@ -132,7 +132,8 @@ class PatternSearch {
     if (tests_ * chance_of_share(x, q, freedom_) > kChance) return;
     const bool more = best_ && best_->owner == pattern.owner && q > 1 && !is_scale;
     const bool less = best_ && is_scale && best_->course == ErrorCourse::axis;
-    if (best_ && left > best_->noise_left - (more ? kSimpler : 0.0) + (less ? kSimpler : 0.0)) return;
+    if (best_ && left > best_->noise_left - (more ? kSimpler : 0.0) + (less ? kSimpler : 0.0))
+      return;
     if (!is_plausible(pattern)) return;
     const Eigen::VectorXd others = fitted_.fit.coordinates.basis * fall.others;
     if (implausible(fitted_.problem, fitted_.free, others)) return;
