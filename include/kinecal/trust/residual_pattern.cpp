@@ -122,14 +122,16 @@ class PatternSearch {
   }
 
   void consider(ResidualPattern pattern, const Fall& fall) {
-    constexpr double kLeft = 0.75, kChance = 1e-6, kSimpler = 0.03, kWrongScale = 0.01;
+    constexpr double kLeft = 0.75, kChance = 1e-6, kSimpler = 0.03, kWrongScale = 0.01,
+                     kSure = 5.0;  // standard errors
     const auto q = static_cast<int>(fall.change.size());
     const double x = std::clamp(fall.squares / squares_, 0.0, 1.0);
     const double left = std::sqrt((1.0 - x) * freedom_ / (freedom_ - q));
     const bool is_scale = pattern.course == ErrorCourse::scale;
-    const bool is_large = is_scale && std::abs(pattern.factor - 1.0) > kWrongScale;
-    if (left > kLeft && !is_large) return;
-    if (tests_ * chance_of_share(x, q, freedom_) > kChance) return;
+    const bool is_large = is_scale && std::abs(pattern.factor - 1.0) > kWrongScale &&
+                          x * (freedom_ - q) > kSure * kSure * (1.0 - x);
+    const bool is_sure = left <= kLeft && tests_ * chance_of_share(x, q, freedom_) <= kChance;
+    if (!is_sure && !is_large) return;
     const bool more = best_ && best_->owner == pattern.owner && q > 1 && !is_scale;
     const bool less = best_ && is_scale && best_->course == ErrorCourse::axis;
     if (best_ && left > best_->noise_left - (more ? kSimpler : 0.0) + (less ? kSimpler : 0.0))

@@ -11,7 +11,7 @@
 //   a (x, y, z)         its scale
 //
 // and fit again.  Positions that are multiples of a step u scatter by u / sqrt(12).  A pattern is reported if chance is excluded over all of them, and if the noise falls to 75 %; a scale
-// also if it is wrong by a hundredth, however much noise is left: noise is no argument for it.
+// also if it is wrong by a hundredth and five standard errors, however much noise is left: noise is no argument for it.
 // Source: Mooring, Roth, Driels, Fundamentals of Manipulator Calibration, 1991, for the errors of joints.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
