@@ -125,10 +125,17 @@ std::vector<Named> mistakes(const Recording& of) {
   return all;
 }
 
+/// Two of the recordings; all with KINECAL_REPETITIONS.
+bool is_tried(const std::string& recording) {
+  return std::getenv("KINECAL_REPETITIONS") != nullptr || recording == "ur5_offsets" ||
+         recording == "kuka";
+}
+
 class NamedCauses : public testing::TestWithParam<const char*> {};
 
 TEST_P(NamedCauses, AreTheRightOnes) {
   KINECAL_NEEDS_RECORDING(GetParam());
+  if (!is_tried(GetParam())) GTEST_SKIP() << "a study: set KINECAL_REPETITIONS";
   const Recording right = test::recording(GetParam());
   int named = 0, wrong = 0, shown = 0;
   for (const Named& mistake : mistakes(right)) {

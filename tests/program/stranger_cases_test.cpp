@@ -177,6 +177,54 @@ TEST_F(StrangerCases, APriorOnWhatIsHeldIsAWarning) {
   EXPECT_EQ(calibrate().code, 1) << "the robot has no such joint";
 }
 
+TEST_F(StrangerCases, ACoupledJointIsNamed) {
+  KINECAL_NEEDS_STRANGER(of, "18-fanuc-j3-against-the-horizontal");
+  for (const char* file : {"robot.urdf", "log.csv"}) take(of, file);
+  EXPECT_EQ(kinecal("init --urdf robot.urdf --from log.csv").code, 0);
+  EXPECT_EQ(kinecal("convert log.csv samples.yaml --columns columns.yaml").code, 0);
+  const std::string cause =
+      "  - likely cause: with the positions of 'joint_3', to which those of "
+      "'joint_2' are added";
+  EXPECT_THAT(calibrate().out, HasSubstr("verdict: do not use\n" + cause));
+  const test::Outcome search =
+      kinecal("identify --urdf robot.urdf --samples samples.yaml -o i.yaml");
+  EXPECT_THAT(search.out, HasSubstr(cause));
+  EXPECT_THAT(search.out, Not(HasSubstr("another robot")));
+}
+
+TEST_F(StrangerCases, MarkerPosesOneRowLateAreNamed) {
+  KINECAL_NEEDS_STRANGER(of, "19-marker-poses-one-row-late");
+  for (const char* file : {"samples.yaml", "samples_200.yaml"}) {
+    const std::string poses = (of / file).string();
+    EXPECT_EQ(kinecal("init --force --poses " + poses + " --target world_marker").code, 0);
+    const test::Outcome found = kinecal(
+        "calibrate --urdf hand_eye.urdf --config calibrate.yaml --samples "
+        "hand_eye_samples.yaml --output out");
+    EXPECT_EQ(found.code, 2);
+    EXPECT_THAT(found.out, testing::ContainsRegex("likely cause: with the poses of '[a-z_]+' of "
+                                                  "the sample (before|after)"));
+  }
+}
+
+TEST_F(StrangerCases, EveryJointThatIsReversedIsNamed) {
+  KINECAL_NEEDS_STRANGER(of, "20-joints-reversed");
+  const std::pair<const char*, const char*> logs[] = {{"log.csv", "'j1', 'j2', 'j3' and 'j5'"},
+                                                      {"two.csv", "'j2' and 'j3'"}};
+  for (const auto& [log, joints] : logs) {
+    const std::string urdf = " --urdf " + (of / "arm.urdf").string();
+    EXPECT_EQ(kinecal("init --force" + urdf + " --from " + (of / log).string()).code, 0);
+    EXPECT_EQ(
+        kinecal("convert --force " + (of / log).string() + " samples.yaml --columns columns.yaml")
+            .code,
+        0);
+    const test::Outcome found =
+        kinecal("calibrate" + urdf + " --config calibrate.yaml --samples samples.yaml --dry-run");
+    EXPECT_THAT(found.out,
+                HasSubstr("verdict: do not use\n  - likely cause: with the positions of " +
+                          std::string(joints) + " negated, the mean residual"));
+  }
+}
+
 TEST_F(StrangerCases, TagsWithAnotherBorderAreNamed) {
   KINECAL_NEEDS_STRANGER(of, "cap-04-border-no-hint");
   fs::create_directories(folder_ / "i");

@@ -113,5 +113,34 @@ TEST_F(TrustCases, ASensorBetterThanTheModelIsNotRefused) {
   EXPECT_EQ(verdict(found), "use with care");
 }
 
+TEST_F(TrustCases, SamplesOfTwoRobotsAreNamed) {
+  KINECAL_NEEDS_CASE(of, "trust-14-two-robots-interleaved");
+  const test::Outcome found = calibrate(of);
+  EXPECT_NE(verdict(found), "good");
+  EXPECT_THAT(found.out, HasSubstr("the zeros of all joints are elsewhere by "));
+  EXPECT_THAT(found.out, testing::ContainsRegex("in (49|50|51) of 100 samples"));
+}
+
+TEST_F(TrustCases, AToolThatIsHeldAndWrongIsNamed) {
+  KINECAL_NEEDS_CASE(of, "trust-15-mount-5-mm-not-found");
+  fs::copy_file(of / "fixture.yaml", folder_ / "config.yaml");
+  for (const char* file : {"robot.urdf", "samples.yaml"}) {
+    fs::copy_file(of / file, folder_ / file);
+  }
+  const test::Outcome found = calibrate(folder_);
+  EXPECT_EQ(verdict(found), "use with care");
+  EXPECT_THAT(found.out, testing::ContainsRegex("freeing (panda_hand_joint|ball_joint|panda_hand_"
+                                                "tcp_joint)_x lowers the error on held-out poses "
+                                                "from 4.7[0-9]* mm to 0.2"));
+}
+
+TEST_F(TrustCases, ALeftHandedTrackerIsNamedFirst) {
+  KINECAL_NEEDS_CASE(of, "trust-18-left-handed-named-as-scale");
+  const test::Outcome found = calibrate(of);
+  EXPECT_EQ(verdict(found), "do not use");
+  EXPECT_THAT(found.out, HasSubstr("verdict: do not use\n  - likely cause: with the points of "
+                                   "'tracker' mirrored, as if its axes were left-handed"));
+}
+
 }  // namespace
 }  // namespace kinecal

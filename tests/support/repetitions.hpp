@@ -11,12 +11,8 @@ namespace kinecal::test {
 
 /// True where sanitizers watch the libraries.
 inline constexpr bool kHasSanitizers = KINECAL_SANITIZERS_IN_LIBRARIES;
-/// True where tests take many times as long as in a release.
-#ifdef __OPTIMIZE__
-inline constexpr bool kIsSlow = kHasSanitizers;
-#else
-inline constexpr bool kIsSlow = true;
-#endif
+/// True where tests take many times as long as in a release.  Tests themselves are not optimized anywhere.
+inline constexpr bool kIsSlow = kHasSanitizers || !KINECAL_LIBRARIES_ARE_OPTIMIZED;
 
 /// The number of repetitions: `full`; `few` where tests are slow.  KINECAL_REPETITIONS replaces either by a
 /// number, at most `full`.

@@ -64,7 +64,10 @@ namespace kinecal::detail {
 /// A pattern that explains more than a change during the recording.
 [[nodiscard]] inline bool judge_pattern(const Assessment& step, Judgement& judgement) {
   if (!step.pattern) return false;
-  if (step.change && step.change->noise_left <= step.pattern->noise_left) return false;
+  constexpr double kSimpler = 0.1;  // backlash splits samples in two as well, by where they came from
+  const bool is_split = step.change && !step.change->here_and_there.empty();
+  const double to_beat = step.change ? step.change->noise_left + (is_split ? kSimpler : 0.0) : 1.0;
+  if (step.change && to_beat <= step.pattern->noise_left) return false;
   judgement.add_causes(Grade::use_with_care, {error_of(*step.pattern) + ", the noise falls to " +
                                               reading(1e2 * step.pattern->noise_left, "1") +
                                               " %; the model does not contain that"});
