@@ -130,6 +130,7 @@ WouldHelp would_help(const Config& config, const Robot& robot, std::span<const S
     const std::string& name = candidate.name;
     const std::string camera = detail::owning_camera(problem, candidate.parameters);
     help.camera = i == 1 || help.camera == camera ? camera : "";
+    if (i == 1) help.first_left = found.steps[i].held_out / found.steps[0].held_out;
     help.left = found.steps[i].held_out / found.steps[0].held_out;
     help.sentences.push_back(i == 1
                                  ? "freeing " + name + " lowers the error on held-out poses from " +
@@ -142,7 +143,8 @@ WouldHelp would_help(const Config& config, const Robot& robot, std::span<const S
 void judge_help(const WouldHelp& help, const Assessment& step, Judgement& judgement) {
   constexpr double kLensIsWrong = 0.7, kHeldIsWrong = 0.75;  // of the error on held-out poses
   if (help.camera.empty()) {
-    if (help.left >= kHeldIsWrong * detail::known_to_leave(step) || !detail::matters(step)) return;
+    const double most = kHeldIsWrong * detail::known_to_leave(step);
+    if (help.first_left >= most || !detail::matters(step)) return;
     judgement.add_causes(
         Grade::use_with_care,
         {fmt::format("{}: what is held is wrong; free it, or is the URDF of another "

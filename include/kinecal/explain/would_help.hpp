@@ -19,7 +19,8 @@ struct WouldHelp {
   std::vector<std::string> sentences;  ///< see would_help()
   std::string
       camera;  ///< prefix of the camera whose intrinsics they name, if they name nothing else
-  double left = 1.0;  ///< of the error on held-out poses with all of them
+  double first_left = 1.0;  ///< of the error on held-out poses with the first of them
+  double left = 1.0;        ///< the same with all of them
 };
 
 /// Sentences, at most two: "freeing elbow_joint_x lowers the error on held-out poses from 0.56 mm to 0.31 mm", "and with
@@ -34,7 +35,7 @@ struct WouldHelp {
                                    const CalibrationResult& result);
 
 /// Adds to a verdict that the lens of a camera is at fault, if its intrinsics alone lower the error on held-out poses by
-/// 30 percent or more; that what is held is wrong, if freeing other parameters does so by 25 percent and more than what is
+/// 30 percent or more; that what is held is wrong, if freeing one other parameter does so by 25 percent and by that more than what is
 /// named already, and if residuals are larger than what robots are good to.
 /// @param step  the assessment of the last step
 void judge_help(const WouldHelp& help, const Assessment& step, Judgement& judgement);

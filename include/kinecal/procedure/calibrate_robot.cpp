@@ -16,6 +16,7 @@
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/explain/judge_causes.hpp"
 #include "kinecal/explain/would_help.hpp"
+#include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/tools/cameras/prepare_cameras.hpp"
 #include "kinecal/tools/identify/another_robot.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
@@ -277,6 +278,10 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
   if (!is_good()) return check_only();
   if (prepared.recorded == Recorded::before) {
     add_rising(rising_of(prepared.urdf_text, prepared.urdf), prepared.samples);
+  }
+  const auto has_moves = [](const Sample& sample) { return !sample.joint_moves.empty(); };
+  if (std::none_of(prepared.samples.begin(), prepared.samples.end(), has_moves)) {
+    set_joint_moves(prepared.samples);
   }
   prepared.decides_cameras = waits || !config.per_sample.empty();
   if (!prepare_cameras(prepared.robot, config, prepared.samples, found)) return prepared;

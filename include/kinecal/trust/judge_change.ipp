@@ -64,7 +64,8 @@ namespace kinecal::detail {
 /// A pattern that explains more than a change during the recording.
 [[nodiscard]] inline bool judge_pattern(const Assessment& step, Judgement& judgement) {
   if (!step.pattern) return false;
-  constexpr double kSimpler = 0.1;  // backlash splits samples in two as well, by where they came from
+  constexpr double kSimpler =
+      0.1;  // backlash splits samples in two as well, by where they came from
   const bool is_split = step.change && !step.change->here_and_there.empty();
   const double to_beat = step.change ? step.change->noise_left + (is_split ? kSimpler : 0.0) : 1.0;
   if (step.change && to_beat <= step.pattern->noise_left) return false;
