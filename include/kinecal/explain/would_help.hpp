@@ -35,8 +35,8 @@ struct WouldHelp {
                                    const CalibrationResult& result);
 
 /// Adds to a verdict that the lens of a camera is at fault, if its intrinsics alone lower the error on held-out poses by
-/// 30 percent or more; that what is held is wrong, if freeing one other parameter does so by 25 percent and by that more than what is
-/// named already, and if residuals are larger than what robots are good to.
+/// 30 percent or more; that what is held is wrong, if freeing one other parameter does so by 25 percent and by that more
+/// than what is named already, and if residuals are larger than what robots are good to.
 /// @param step  the assessment of the last step
 void judge_help(const WouldHelp& help, const Assessment& step, Judgement& judgement);
 

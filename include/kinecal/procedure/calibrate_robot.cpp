@@ -234,13 +234,14 @@ void explain(CalibratedRobot& calibrated, const CalibrationOptions& options) {
     if (!why.empty()) findings.judgement.add_causes(Grade::do_not_use, {why});
   }
   if (!frees_some) return;
+  const bool is_explained = findings.judgement.causes > causes;
   judge_scales(input, findings);
   if (!calibrated.robot_search) {  // else it is freed already
     const WouldHelp help = would_help(*setup.config, setup.robot, calibrated.samples,
                                       setup.calibration, findings.result);
     findings.helps = help.sentences;
     findings.helps_leave = help.left;
-    if (!findings.assessments.empty()) {
+    if (!findings.assessments.empty() && !is_explained) {
       judge_help(help, findings.assessments.back(), findings.judgement);
     }
   }

@@ -1,5 +1,7 @@
-// Generators of suspects.
+// Definitions of suspect.hpp.
 // SPDX-License-Identifier: Apache-2.0
+#include "kinecal/explain/suspect.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/explain/pose_suspects.ipp"
-#include "kinecal/explain/suspect.hpp"
 #include "kinecal/kinematics/chain.hpp"
 
 namespace kinecal {
