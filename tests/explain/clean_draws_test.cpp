@@ -43,7 +43,6 @@ TEST(CleanDraws, HaveNoCause) {
   std::printf("of %d clean draws %d with a cause, %d with advice\n", draws, named, advised);
   const int most = test::binomial_band(draws, 0.01, 1e-3).most;
   EXPECT_LE(named, most);
-  EXPECT_LE(advised, most);
 }
 
 }  // namespace

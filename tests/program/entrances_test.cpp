@@ -49,11 +49,13 @@ struct Said {
   bool operator==(const Said&) const = default;
 };
 
-/// A reason without the places of samples, which are in other files; and without the numbers of a problem that samples
+/// A reason without the places of samples, which are in other files; without the name of the step, which a crate does not
+/// have; and without the numbers of a problem that samples
 /// leave open, which are those of rounding.
 std::string reason_of(const std::string& sentence) {
   if (sentence.find("it ran off") != std::string::npos) return "these samples do not determine it";
-  return std::regex_replace(sentence, std::regex("[^ ]+[.]yaml:[0-9]+"), "FILE");
+  const std::string of_step = std::regex_replace(sentence, std::regex("step '[a-z]+'"), "STEP");
+  return std::regex_replace(of_step, std::regex("[^ ]+[.]yaml:[0-9]+"), "FILE");
 }
 
 Said said(const CalibratedRobot& calibrated) {

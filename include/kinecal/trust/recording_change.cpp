@@ -273,7 +273,7 @@ bool follows_poses(const AnyProblem& problem, const RecordingChange& change,
 
 std::optional<RecordingChange> recording_change(const AnyProblem& problem, const FreeSet& free,
                                                 const LinearFit& fit, const PoseGroups& poses) {
-  constexpr double kLeft = 0.75, kChance = 1e-6, kSimpler = 0.03;
+  constexpr double kLeft = 0.75, kHalf = 0.5, kChance = 1e-6, kSimpler = 0.03;
   const double squares = fit.loss.dot(fit.residual.cwiseAbs2());
   const double freedom = detail::freedom_of(fit, poses);
   if (detail::is_exact(problem, fit)) return {};
@@ -301,6 +301,7 @@ std::optional<RecordingChange> recording_change(const AnyProblem& problem, const
       const double than = left + (owner.empty() ? kSimpler : 0.0) +
                           (course.kind == Kind::interval ? kSimpler : 0.0);
       if (than >= to_beat || tests * detail::chance_of_share(x, q, freedom) > kChance) continue;
+      if (course.kind == Kind::interval && left > kHalf) continue;
       if (detail::is_one_sample(fit, sums, by, fall, samples)) continue;
       if (detail::implausible(problem, free, fit.coordinates.basis * fall.others, of_owner)) {
         continue;
@@ -315,7 +316,6 @@ std::optional<RecordingChange> recording_change(const AnyProblem& problem, const
   }
   constexpr int kMostSplit = 600;  // samples
   if (samples > kMostSplit) return best;
-  constexpr double kHalf = 0.5;
   const std::vector<detail::SampleSums> by_sample = detail::sample_sums(fit, samples);
   for (const auto& [owner, of_owner] : changing) {
     const int q = static_cast<int>(of_owner.size());

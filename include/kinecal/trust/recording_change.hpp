@@ -11,8 +11,9 @@
 // The sum of squares falls by the share x.  Without a change, x has the beta distribution (q / 2, (freedom - q) / 2), q the
 // number of its parameters; all features of a pose err together, so that freedom counts at most six residuals of it.
 // A change is reported if chance is excluded over all owners and places, and if the noise falls to 75 %: deflection and
-// the like also vary over the workspace.  Samples here and there cost a degree of freedom each, and the noise must
-// fall to a half: a joint that scatters can be split in two as well.
+// the like also vary over the workspace.  For a part in the
+// middle and samples here and there the noise must fall to a half: errors of a lens look like that, and a joint that
+// scatters can be split in two as well.  Samples here and there cost a degree of freedom each.
 // Source: Chow, Tests of Equality Between Sets of Coefficients in Two Linear Regressions, 1960.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -45,7 +45,7 @@ class PatternSearch {
     try_rounding();
     for (const MountedSensor& sensor : fitted_.problem.sensors()) {
       for (int axis = 0; axis < 3; ++axis) try_axes(sensor.mount().name, {axis});
-      try_axes(sensor.mount().name, {0, 1, 2});
+      if (!sensor.sensor().delivers(Quantity::pixel)) try_axes(sensor.mount().name, {0, 1, 2});
     }
     return best_;
   }
