@@ -314,7 +314,7 @@ std::optional<RecordingChange> recording_change(const AnyProblem& problem, const
       detail::set_size(problem, free, of_owner, fall.change, *best);
     }
   }
-  constexpr int kMostSplit = 600;  // samples
+  constexpr int kMostSplit = 300;  // samples
   if (samples > kMostSplit) return best;
   const std::vector<detail::SampleSums> by_sample = detail::sample_sums(fit, samples);
   for (const auto& [owner, of_owner] : changing) {
