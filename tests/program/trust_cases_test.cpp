@@ -142,5 +142,13 @@ TEST_F(TrustCases, ALeftHandedTrackerIsNamedFirst) {
                                    "'tracker' mirrored, as if its axes were left-handed"));
 }
 
+TEST_F(TrustCases, AScaleOfSixStandardErrorsIsNamedThoughNoiseStays) {
+  KINECAL_NEEDS_CASE(of, "trust-19-scale-of-10-percent-good");
+  const test::Outcome found = calibrate(of);
+  EXPECT_EQ(verdict(found), "use with care");
+  EXPECT_THAT(found.out,
+              testing::ContainsRegex("with the points of 'tracker' multiplied by 0\\.8"));
+}
+
 }  // namespace
 }  // namespace kinecal

@@ -111,6 +111,26 @@ TEST(ResidualPattern, FindsAnAxisOfASensorWithAnotherScale) {
   EXPECT_NEAR(found->factor, 1.0 / 1.03, 0.005);
 }
 
+/// Named by five standard errors, however much noise is left.
+TEST(ResidualPattern, FindsTheScaleOfASensor) {
+  test::NoisyScene scene(40);
+  for (const char* name : {"camera_fx", "camera_cy", "camera_z_scaling", "camera_z_offset"}) {
+    std::erase(scene.names, name);
+  }
+  EXPECT_FALSE(pattern_in(scene));
+  for (Sample& sample : scene.samples) {
+    for (Observation& seen : sample.observations) {
+      if (seen.sensor != "camera") continue;
+      for (Feature& feature : seen.features) feature.point *= 1.03;
+    }
+  }
+  const auto found = pattern_in(scene);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->owner, "camera");
+  EXPECT_EQ(found->course, ErrorCourse::scale);
+  EXPECT_NEAR(found->factor, 1.0 / 1.03, 0.005);
+}
+
 TEST(ResidualPattern, IsNoneIfNothingIsLeftToExplain) {
   test::NoisyScene scene(40);
   scene.samples =

@@ -46,6 +46,12 @@ struct Explanation {
   }
 };
 
+/// Plausible parameters first, then the lower cost.
+[[nodiscard]] bool fits_better(const Explanation* a, const Explanation* b) {
+  return std::pair(a->after.implausible > 0, a->cost) <
+         std::pair(b->after.implausible > 0, b->cost);
+}
+
 /// "with the positions of 'a' and 'b' negated, and with those of ..."
 [[nodiscard]] std::string text_of(const std::vector<const Suspect*>& suspects) {
   std::vector<std::string> signs;
@@ -87,7 +93,7 @@ class Weighing {
       if (!is_explained()) combine();
     }
     Explained explained;
-    explained.tried = static_cast<int>(std::ssize(suspects_)) + tried_;
+    explained.tried = static_cast<int>(std::ssize(suspects_)) + combined_;
     if (const auto likely = ranked(); !likely.empty()) {
       explained.cause = sentence(likely);
       explained.left = now_ ? likely.front()->cost / now_->cost : 0.0;
@@ -170,10 +176,7 @@ class Weighing {
     for (const Explanation& of : all) {
       if (!of.suspects.front()->scale) best.push_back(&of);
     }
-    std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) {
-      return std::pair(a->after.implausible > 0, a->cost) <
-             std::pair(b->after.implausible > 0, b->cost);
-    });
+    std::stable_sort(best.begin(), best.end(), fits_better);
     best.resize(std::min(best.size(), widest));
     Together lists;
     std::set<std::vector<const Suspect*>> seen;
@@ -181,9 +184,9 @@ class Weighing {
       for (const Suspect& suspect : suspects_) {
         const auto& list = begin->suspects;
         if (suspect.scale || std::find(list.begin(), list.end(), &suspect) != list.end()) continue;
-        std::vector<const Suspect*> together = list, same;
+        std::vector<const Suspect*> together = list;
         together.push_back(&suspect);
-        same = together;
+        std::vector<const Suspect*> same = together;
         std::sort(same.begin(), same.end());
         if (seen.insert(same).second) lists.push_back(together);
       }
@@ -204,10 +207,7 @@ class Weighing {
       for (const Explanation& of : sought) {
         if (of.suspects.size() > 1) best.push_back(&of);
       }
-      std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) {
-        return std::pair(a->after.implausible > 0, a->cost) <
-               std::pair(b->after.implausible > 0, b->cost);
-      });
+      std::stable_sort(best.begin(), best.end(), fits_better);
       const auto others = std::find_if(best.begin(), best.end(), [&](const Explanation* of) {
         return of->cost > alike() * best.front()->cost ||
                of->after.implausible > best.front()->after.implausible;
@@ -220,7 +220,7 @@ class Weighing {
       Together lists;
       for (const Explanation* of : best) lists.push_back(of->suspects);
       attempt(lists);
-      tried_ = few.fits_made();
+      combined_ = static_cast<int>(std::ssize(sought));
     };
     append(few, signs_together(), sought);
     fit_best();
@@ -309,7 +309,7 @@ class Weighing {
   std::vector<Suspect> in_part_;
   std::optional<Refit> now_;
   std::vector<Explanation> all_;
-  int tried_ = 0;  ///< combinations
+  int combined_ = 0;  ///< combinations that were tried
 };
 
 }  // namespace
@@ -331,12 +331,13 @@ std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
   const detail::Refits refits(config, robot, samples, solve, &solution);
   const std::optional<detail::Refit> now = refits.as_given();
   if (!now || detail::is_exact(*now)) return {};
-  if (auto found = detail::scale_sentences(refits, *now, robot); !found.empty()) return found;
+  std::vector<Suspect> scales = suspects_of(config, robot, refits.some());
+  std::erase_if(scales, [](const Suspect& suspect) { return !suspect.scale; });
+  if (auto found = detail::scale_sentences(refits, *now, scales); !found.empty()) return found;
   const std::vector<detail::FreeLength> lengths = detail::free_lengths(robot, solution, last);
   if (lengths.size() < 2) return {};
   std::vector<std::string> found;
-  for (const Suspect& suspect : suspects_of(config, robot, refits.some())) {
-    if (!suspect.scale) continue;
+  for (const Suspect& suspect : scales) {
     auto scaled = detail::absorbed_scale(refits, suspect, *now, lengths);
     if (scaled) found.push_back(*std::move(scaled));
   }
@@ -347,7 +348,7 @@ std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
   if (!then) return {};
   std::vector<std::string> names;
   for (const detail::FreeLength& length : lengths) names.push_back(length.name);
-  found = detail::scale_sentences(with_zeros, *then, robot);
+  found = detail::scale_sentences(with_zeros, *then, scales);
   for (std::string& sentence : found) {
     sentence += " with zeros in place of " + first_names(names) + ", which may have absorbed it";
   }

@@ -21,6 +21,7 @@
 #include "kinecal/evaluation/parallel.hpp"
 #include "kinecal/explain/refit.ipp"
 #include "kinecal/geometry/median.hpp"
+#include "kinecal/trust/judge_files.hpp"
 
 namespace kinecal::detail {
 
@@ -30,25 +31,19 @@ namespace kinecal::detail {
                                                         std::span<const Sample> samples) {
   const std::unique_ptr<AnyProblem> problem = empty.without_samples();
   std::vector<double> squares(samples.size(), HUGE_VAL);
-  std::vector<std::size_t> numbers;  // of the problem's samples
+  std::vector<int> usable;  // numbers of the problem's samples
   for (std::size_t i = 0; i < samples.size(); ++i) {
     try {
       problem->add_sample(samples[i]);
-      numbers.push_back(i);
+      usable.push_back(static_cast<int>(i));
     } catch (const SampleError&) {
     }
   }
-  std::vector<double> sums(samples.size(), 0.0), rows = sums;
-  const auto undefined =
-      evaluate(*problem, {values.data(), static_cast<std::size_t>(values.size())}, nullptr,
-               [&](int, int sample, const TermResiduals& of) {
-                 const std::size_t i = numbers[static_cast<std::size_t>(sample)];
-                 sums[i] += of.residual.squaredNorm();
-                 rows[i] += static_cast<double>(of.residual.size());
-               });
-  if (undefined) return squares;  // a point behind a camera
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (rows[i] > 0.0) squares[i] = sums[i] / rows[i];
+  const std::vector<double> misfits =
+      misfits_of(*problem, {values.data(), static_cast<std::size_t>(values.size())}, usable);
+  for (const int i : usable) {
+    const double misfit = misfits[static_cast<std::size_t>(i)];
+    squares[static_cast<std::size_t>(i)] = misfit * misfit;
   }
   return squares;
 }
@@ -99,6 +94,7 @@ struct Concentrated {
   constexpr int kStarts = 60, kFirst = 2, kThen = 4;
   constexpr std::size_t kFewest = 10, kBest = 4;
   const std::size_t count = refits.some().size();
+  if (!refits.is_assembled()) return std::nullopt;
   const FreeSet unknown = refits.unknown(), all = refits.free();
   if (count < std::max(kFewest, refits.fewest(all))) return std::nullopt;
   std::vector<std::optional<Concentrated>> starts(kStarts);
@@ -136,8 +132,7 @@ struct Concentrated {
 }
 
 /// A suspect in some of the drawn samples.
-/// @param bad    their numbers among the drawn ones
-/// @param draw   number among all of each drawn one
+/// @param bad  their numbers among the drawn ones
 [[nodiscard]] inline Suspect in_samples(const Suspect& suspect, const std::vector<std::size_t>& bad,
                                         const Refits& refits) {
   std::vector<std::size_t> numbers;

@@ -10,7 +10,7 @@
 #include "kinecal/config/doubts/check_offsets.hpp"
 #include "kinecal/explain/explain_fit.hpp"
 #include "kinecal/files/results/result_files.hpp"
-#include "kinecal/trust/plausible_change.ipp"
+#include "kinecal/trust/judge_values.ipp"
 
 namespace kinecal {
 
@@ -45,7 +45,7 @@ void judge_impossible(const CalibrationInput& input, JudgedResult& judged) {
 [[nodiscard]] bool is_implausible(const CalibrationStep& step, const ParameterTable& solution) {
   const std::vector<int>& free = step.free.parameters();
   return std::any_of(free.begin(), free.end(), [&](int p) {
-    return !(std::abs(solution[p].value - solution[p].initial) < plausible_change(step, p).refuse);
+    return !(std::abs(change_of(solution[p])) < plausible_change(step, p).refuse);
   });
 }
 

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -20,6 +19,7 @@
 #include "kinecal/explain/explain_fit.hpp"
 #include "kinecal/explain/suspect.hpp"
 #include "kinecal/trust/judge_noise.ipp"
+#include "kinecal/trust/judge_values.ipp"
 
 namespace kinecal::detail {
 
@@ -28,11 +28,9 @@ struct Refit {
   double cost = 0.0;
   std::vector<BlockStatistics> blocks;
   ParameterTable table;
-  double size = 0.0;  ///< of the robot, metres
-  int implausible =
-      0;  ///< parameters that ended farther from where they began than robots are wrong
-  double strain =
-      0.0;  ///< sum of squared changes of parameters, each over its largest plausible one
+  double size = 0.0;    ///< of the robot, metres
+  int implausible = 0;  ///< parameters that moved farther than robots are wrong
+  double strain = 0.0;  ///< sum of squared moves of parameters, each over its largest plausible one
 };
 
 /// True if an error block's residuals are distances.
@@ -79,7 +77,6 @@ class Refits {
     return {config_, robot_, samples_, solve_, from_, most};
   }
 
-  [[nodiscard]] const Config& config() const { return config_; }
   [[nodiscard]] const std::vector<Sample>& some() const { return some_; }  ///< that are fitted
   /// Numbers of them among all.
   [[nodiscard]] const std::vector<std::size_t>& draw() const { return draw_; }
@@ -106,11 +103,12 @@ class Refits {
     const double each = std::max(1.0, rows / static_cast<double>(some_.size()));
     return 2 + static_cast<std::size_t>(static_cast<double>(free.size()) / each);
   }
+  /// False if these samples cannot be fitted: then there is no problem.
+  [[nodiscard]] bool is_assembled() const { return calibration_.has_value(); }
   /// The free parameters of the last step.
   [[nodiscard]] const FreeSet& free() const { return calibration_->steps.back().free; }
   /// The problem of the last step.
   [[nodiscard]] const AnyProblem& problem() const { return *calibration_->steps.back().problem; }
-  [[nodiscard]] int fits_made() const { return fits_; }
   /// Of the samples as they are; nullopt: they cannot be fitted.
   [[nodiscard]] std::optional<Refit> as_given() const {
     return calibration_ ? solved(*calibration_) : std::nullopt;
@@ -206,14 +204,13 @@ class Refits {
   }
   /// nullopt if the fit is not finite.
   [[nodiscard]] std::optional<Refit> solved(const Calibration& calibration) const {
-    ++fits_;
     const CalibrationResult result = solve_(calibration);
     if (result.steps.empty() || !std::isfinite(result.steps.back().final_cost)) return {};
     const CalibrationStep& last = calibration.steps.back();
     Refit fit{result.steps.back().final_cost, result.blocks, result.table,
               robot_size(*last.problem)};
     for (const int p : last.free.parameters()) {
-      const double change = result.table[p].value - result.table[p].initial;
+      const double change = change_of(result.table[p]);
       const Limits limits = plausible_change(last, p);
       fit.implausible += limits.exceeded(std::abs(change)) ? 1 : 0;
       fit.strain += change * change / (limits.care * limits.care);
@@ -229,7 +226,6 @@ class Refits {
   std::vector<std::size_t> draw_;
   std::vector<Sample> some_;
   std::optional<Calibration> calibration_;
-  mutable std::atomic<int> fits_ = 0;
 };
 
 [[nodiscard]] inline Calibrator plain_calibrator() {

@@ -67,13 +67,13 @@ struct ScaledFit {
 }
 
 /// Scales of points at which the noise is half as large, as sentences.
+/// @param scales  suspects that are scales
 [[nodiscard]] inline std::vector<std::string> scale_sentences(const Refits& refits,
                                                               const Refit& now,
-                                                              const Robot& robot) {
+                                                              const std::vector<Suspect>& scales) {
   constexpr double kHalfNoise = 0.25;
   std::vector<std::string> found;
-  for (const Suspect& suspect : suspects_of(refits.config(), robot, refits.some())) {
-    if (!suspect.scale) continue;
+  for (const Suspect& suspect : scales) {
     const auto scaled = scaled_fit(refits, suspect, now, kHalfNoise);
     if (!scaled) continue;
     found.push_back(fmt::format("{}multiplied by {:.4g}, {}", suspect.undone, scaled->factor,

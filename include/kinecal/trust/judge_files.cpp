@@ -39,7 +39,10 @@ std::vector<double> misfits_of(const AnyProblem& problem, ParameterValues values
     squares[file] += (weight * of.factor.cwiseProduct(of.residual)).squaredNorm();
     rows[file] += static_cast<double>(of.residual.size()) - of.used.sum();
   };
-  (void)evaluate(problem, values, nullptr, visit);
+  if (evaluate(problem, values, nullptr, visit)) {  // a point behind a camera
+    const auto count = files.empty() ? 0 : *std::max_element(files.begin(), files.end()) + 1;
+    return std::vector<double>(static_cast<std::size_t>(std::max(0, count)), HUGE_VAL);
+  }
   for (std::size_t file = 0; file < squares.size(); ++file) {
     squares[file] = std::sqrt(squares[file] / std::max(1.0, rows[file]));
   }

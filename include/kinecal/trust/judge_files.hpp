@@ -11,7 +11,7 @@
 
 namespace kinecal::detail {
 
-/// RMS of the weighted residuals of each file.
+/// RMS of the weighted residuals of each file; infinite if a residual is not defined at these values.
 /// @param values  of all parameters of the table
 /// @param files   of each sample of the problem: the number of its file, from 0; -1: of none
 [[nodiscard]] std::vector<double> misfits_of(const AnyProblem& problem, ParameterValues values,

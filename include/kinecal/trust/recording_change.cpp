@@ -30,6 +30,29 @@ struct Course {
   }
 };
 
+/// J^T W J and J^T W r of some rows.
+struct RowSums {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+
+  RowSums& operator+=(const RowSums& more) {
+    information += more.information;
+    gradient += more.gradient;
+    return *this;
+  }
+};
+
+[[nodiscard]] inline RowSums no_rows(Eigen::Index n) {
+  return {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+}
+
+[[nodiscard]] inline RowSums sums_of(const LinearFit& fit, const RowBlock& block) {
+  const auto rows = fit.jacobian.middleRows(block.first, block.size);
+  const auto weights = fit.loss.segment(block.first, block.size);
+  return {rows.transpose() * weights.asDiagonal() * rows,
+          rows.transpose() * weights.cwiseProduct(fit.residual.segment(block.first, block.size))};
+}
+
 /// J^T W J and J^T W r with samples weighted by a course.
 struct CourseSums {
   Course course;
@@ -45,36 +68,27 @@ struct CourseSums {
   const int few = std::max(3, (samples + 9) / 10);
   const Eigen::Index n = fit.size();
   const int parts = std::min(kParts, samples);
-  const CourseSums none{
-      {}, Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
-  std::vector<CourseSums> before(static_cast<std::size_t>(parts) + 1,
-                                 none);  // of all samples before a part
-  CourseSums drift = none;
-  drift.course.kind = Course::Kind::drifts;
+  std::vector<RowSums> before(static_cast<std::size_t>(parts) + 1, no_rows(n));  // a part
+  CourseSums drift{{Course::Kind::drifts},
+                   Eigen::MatrixXd::Zero(n, n),
+                   Eigen::MatrixXd::Zero(n, n),
+                   Eigen::VectorXd::Zero(n)};
   for (const RowBlock& block : fit.blocks) {
     const auto part = static_cast<std::size_t>(static_cast<long>(block.sample) * parts / samples);
-    const auto rows = fit.jacobian.middleRows(block.first, block.size);
-    const auto weights = fit.loss.segment(block.first, block.size);
-    const Eigen::MatrixXd information = rows.transpose() * weights.asDiagonal() * rows;
-    const Eigen::VectorXd gradient =
-        rows.transpose() * weights.cwiseProduct(fit.residual.segment(block.first, block.size));
-    before[part + 1].information += information;
-    before[part + 1].gradient += gradient;
+    const RowSums sums = sums_of(fit, block);
+    before[part + 1] += sums;
     const double u = drift.course.at(block.sample, samples);
-    drift.information += u * information;
-    drift.squared += u * u * information;
-    drift.gradient += u * gradient;
+    drift.information += u * sums.information;
+    drift.squared += u * u * sums.information;
+    drift.gradient += u * sums.gradient;
   }
-  for (std::size_t p = 1; p < before.size(); ++p) {
-    before[p].information += before[p - 1].information;
-    before[p].gradient += before[p - 1].gradient;
-  }
+  for (std::size_t p = 1; p < before.size(); ++p) before[p] += before[p - 1];
   const auto first_of = [&](int part) {
     return static_cast<int>((static_cast<long>(part) * samples + parts - 1) / parts);
   };
   const auto between = [&](Course::Kind kind, int part, int end) {
-    const CourseSums &a = before[static_cast<std::size_t>(part)],
-                     &b = before[static_cast<std::size_t>(end)];
+    const RowSums &a = before[static_cast<std::size_t>(part)],
+                  &b = before[static_cast<std::size_t>(end)];
     const Eigen::MatrixXd information = b.information - a.information;
     return CourseSums{
         {kind, first_of(part), first_of(end)}, information, information, b.gradient - a.gradient};
@@ -138,13 +152,18 @@ struct CourseSums {
 
 /// What may change together.
 struct Changing {
-  std::string owner;         ///< empty: the zeros of all joints
-  std::vector<int> columns;  ///< of the free parameters
+  std::string owner;           ///< empty: the zeros of all joints
+  std::vector<int> columns;    ///< of the free parameters
+  Eigen::MatrixXd by = {};     ///< (coordinates x parameters)
+  Eigen::VectorXd whole = {};  ///< (parameters) diagonal of their information in all samples
 };
 
 /// The parameters of each owner, then the zeros of all joints.
+/// @param all  information of the fit
 [[nodiscard]] inline std::vector<Changing> what_may_change(const AnyProblem& problem,
-                                                           const FreeSet& free) {
+                                                           const FreeSet& free,
+                                                           const LinearFit& fit,
+                                                           const Eigen::MatrixXd& all) {
   std::map<std::string, std::vector<int>> columns;
   std::vector<int> zeros;
   for (int c = 0; c < free.size(); ++c) {
@@ -153,10 +172,16 @@ struct Changing {
     columns[owner].push_back(c);
     if (problem.table()[p].name == owner && problem.robot().has_joint(owner)) zeros.push_back(c);
   }
-  std::vector<Changing> all;
-  for (const auto& [owner, of_owner] : columns) all.push_back({owner, of_owner});
-  if (zeros.size() > 1) all.push_back({"", zeros});
-  return all;
+  std::vector<Changing> changing;
+  for (const auto& [owner, of_owner] : columns) changing.push_back({owner, of_owner});
+  if (zeros.size() > 1) changing.push_back({"", zeros});
+  const Eigen::MatrixXd to_coordinates =
+      fit.coordinates.basis.completeOrthogonalDecomposition().pseudoInverse();
+  for (Changing& one : changing) {
+    one.by = to_coordinates(Eigen::all, one.columns);
+    one.whole = (one.by.transpose() * all * one.by).diagonal();
+  }
+  return changing;
 }
 
 /// How far parameters change.
@@ -172,23 +197,11 @@ inline void set_size(const AnyProblem& problem, const FreeSet& free,
   }
 }
 
-/// J^T W J and J^T W r of each sample.
-struct SampleSums {
-  Eigen::MatrixXd information;
-  Eigen::VectorXd gradient;
-};
-
-[[nodiscard]] inline std::vector<SampleSums> sample_sums(const LinearFit& fit, int samples) {
-  const Eigen::Index n = fit.size();
-  std::vector<SampleSums> all(static_cast<std::size_t>(samples),
-                              {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
+/// Those of each sample.
+[[nodiscard]] inline std::vector<RowSums> sample_sums(const LinearFit& fit, int samples) {
+  std::vector<RowSums> all(static_cast<std::size_t>(samples), no_rows(fit.size()));
   for (const RowBlock& block : fit.blocks) {
-    const auto rows = fit.jacobian.middleRows(block.first, block.size);
-    const auto weights = fit.loss.segment(block.first, block.size);
-    SampleSums& of = all[static_cast<std::size_t>(block.sample)];
-    of.information += rows.transpose() * weights.asDiagonal() * rows;
-    of.gradient +=
-        rows.transpose() * weights.cwiseProduct(fit.residual.segment(block.first, block.size));
+    all[static_cast<std::size_t>(block.sample)] += sums_of(fit, block);
   }
   return all;
 }
@@ -202,7 +215,7 @@ struct Mixture {
 /// Splits samples in two: those that fit better with other parameters of an owner, fitted in turn with these
 /// parameters, from the direction in which the samples differ most.
 /// @param by  (coordinates x parameters) of the owner
-[[nodiscard]] inline Mixture mixture_of(const std::vector<SampleSums>& all,
+[[nodiscard]] inline Mixture mixture_of(const std::vector<RowSums>& all,
                                         const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& by,
                                         const Eigen::VectorXd& whole) {
   constexpr int kRounds = 30;
@@ -210,29 +223,27 @@ struct Mixture {
   const Eigen::VectorXd scale =
       whole.unaryExpr([](double w) { return w > 0.0 ? 1.0 / std::sqrt(w) : 0.0; });
   Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(q, q);
-  for (const SampleSums& of : all) {
+  for (const RowSums& of : all) {
     const Eigen::VectorXd g = scale.cwiseProduct(by.transpose() * of.gradient);
     spread += g * g.transpose();
   }
   const Eigenpairs directions = eigenpairs(spread);
   const Eigen::VectorXd most = directions.vectors.col(q - 1);
   std::vector<char> changed;
-  for (const SampleSums& of : all) {
+  for (const RowSums& of : all) {
     changed.push_back(most.dot(scale.cwiseProduct(by.transpose() * of.gradient)) > 0.0 ? 1 : 0);
   }
   Mixture mixture;
   for (int round = 0; round < kRounds; ++round) {
-    CourseSums sums{{}, Eigen::MatrixXd::Zero(n, n), {}, Eigen::VectorXd::Zero(n)};
+    RowSums sums = no_rows(n);
     for (std::size_t s = 0; s < all.size(); ++s) {
-      if (changed[s] == 0) continue;
-      sums.information += all[s].information;
-      sums.gradient += all[s].gradient;
+      if (changed[s] != 0) sums += all[s];
     }
-    sums.squared = sums.information;
-    mixture.fall = fall_of(sums, inverse, by, whole);
+    mixture.fall =
+        fall_of({{}, sums.information, sums.information, sums.gradient}, inverse, by, whole);
     const Eigen::VectorXd d = by * mixture.fall.change, others = mixture.fall.others;
     std::vector<char> better;
-    for (const SampleSums& of : all) {
+    for (const RowSums& of : all) {
       const Eigen::VectorXd moved = of.information * d;
       better.push_back(2.0 * (d.dot(of.gradient) + moved.dot(others)) + d.dot(moved) < 0.0 ? 1 : 0);
     }
@@ -277,22 +288,18 @@ std::optional<RecordingChange> recording_change(const AnyProblem& problem, const
   const double squares = fit.loss.dot(fit.residual.cwiseAbs2());
   const double freedom = detail::freedom_of(fit, poses);
   if (detail::is_exact(problem, fit)) return {};
-  const std::vector<detail::Changing> changing = detail::what_may_change(problem, free);
   const Eigen::MatrixXd all = information(fit, fit.loss);
   const Eigen::MatrixXd inverse = detail::Spectrum(all).pseudo_inverse();
-  const Eigen::MatrixXd to_coordinates =
-      fit.coordinates.basis.completeOrthogonalDecomposition().pseudoInverse();
+  const std::vector<detail::Changing> changing = detail::what_may_change(problem, free, fit, all);
   const int samples = problem.num_samples();
   const std::vector<detail::CourseSums> courses = detail::course_sums(fit, samples);
   const double tests = static_cast<double>(courses.size() * changing.size());
   using Kind = detail::Course::Kind;
   std::optional<RecordingChange> best;
   double to_beat = kLeft;
-  for (const auto& [owner, of_owner] : changing) {
+  for (const auto& [owner, of_owner, by, whole] : changing) {
     const int q = static_cast<int>(of_owner.size());
     if (freedom - q < 2.0 * q) continue;
-    const Eigen::MatrixXd by = to_coordinates(Eigen::all, of_owner);
-    const Eigen::VectorXd whole = (by.transpose() * all * by).diagonal();
     for (const detail::CourseSums& sums : courses) {
       const detail::Course& course = sums.course;
       const detail::Fall fall = detail::fall_of(sums, inverse, by, whole);
@@ -316,13 +323,11 @@ std::optional<RecordingChange> recording_change(const AnyProblem& problem, const
   }
   constexpr int kMostSplit = 300;  // samples
   if (samples > kMostSplit) return best;
-  const std::vector<detail::SampleSums> by_sample = detail::sample_sums(fit, samples);
-  for (const auto& [owner, of_owner] : changing) {
+  const std::vector<detail::RowSums> by_sample = detail::sample_sums(fit, samples);
+  for (const auto& [owner, of_owner, by, whole] : changing) {
     const int q = static_cast<int>(of_owner.size());
     const double of_split = freedom - q - samples;
     if (of_split < 2.0 * q) continue;
-    const Eigen::MatrixXd by = to_coordinates(Eigen::all, of_owner);
-    const Eigen::VectorXd whole = (by.transpose() * all * by).diagonal();
     const detail::Mixture mixture = detail::mixture_of(by_sample, inverse, by, whole);
     const double x = std::clamp(mixture.fall.squares / squares, 0.0, 1.0);
     const double left = std::sqrt((1.0 - x) * freedom / of_split);

@@ -39,13 +39,15 @@ class PatternSearch {
   [[nodiscard]] std::optional<ResidualPattern> find(const Eigen::MatrixXd& effects) {
     constexpr double kFew = 6.0;
     if (freedom_ < kFew || is_exact(fitted_.problem, fitted_.fit)) return {};
-    const std::size_t axes = 4 * fitted_.problem.sensors().size();
+    const std::size_t axes = 5 * fitted_.problem.sensors().size();
     tests_ = static_cast<double>(tracks_.size() * std::size(kJointCourses) + 1 + axes);
     try_joints(effects);
     try_rounding();
     for (const MountedSensor& sensor : fitted_.problem.sensors()) {
       for (int axis = 0; axis < 3; ++axis) try_axes(sensor.mount().name, {axis});
-      if (!sensor.sensor().delivers(Quantity::pixel)) try_axes(sensor.mount().name, {0, 1, 2});
+      if (sensor.sensor().delivers(Quantity::pixel)) continue;
+      try_axes(sensor.mount().name, {0, 1, 2});
+      try_axes(sensor.mount().name, {0, 1, 2}, mean_point(sensor.mount().name));
     }
     return best_;
   }
@@ -95,14 +97,31 @@ class PatternSearch {
     rounded_.noise_left = std::sqrt(std::max(0.0, 1.0 - rounding_ / squares_));
     if (!best_ || rounded_.noise_left < best_->noise_left) best_ = rounded_;
   }
-  /// @param axes  of a sensor: one, or all: its scale
-  void try_axes(const std::string& sensor, const std::vector<int>& axes) {
+  /// Mean of all points of a sensor.
+  [[nodiscard]] Vector3<double> mean_point(const std::string& sensor) const {
+    Vector3<double> sum = Vector3<double>::Zero();
+    double count = 0.0;
+    for (const Sample& sample : fitted_.samples) {
+      for (const Observation& seen : sample.observations) {
+        if (seen.sensor != sensor) continue;
+        for (const Feature& feature : seen.features) sum += feature.point, count += 1.0;
+      }
+    }
+    return sum / std::max(1.0, count);
+  }
+  /// @param axes    of a sensor: one, or all: its scale
+  /// @param center  stays where it is.  Far from the points, a free frame takes up nearly all of a scale, and what is
+  ///                left looks like rounding
+  void try_axes(const std::string& sensor, const std::vector<int>& axes,
+                const Vector3<double>& center = Vector3<double>::Zero()) {
     constexpr double kStep = 1e-6;  // relative
     const auto longer = [&](Sample& sample) {
       for (Observation& seen : sample.observations) {
         if (seen.sensor != sensor) continue;
         for (Feature& feature : seen.features) {
-          for (const int axis : axes) feature.point(axis) *= 1.0 + kStep;
+          for (const int axis : axes) {
+            feature.point(axis) += kStep * (feature.point(axis) - center(axis));
+          }
         }
       }
     };
