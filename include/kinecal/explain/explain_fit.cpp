@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <set>
 
@@ -117,11 +118,37 @@ class Weighing {
     });
     for (std::size_t i = 0; i < lists.size(); ++i) {
       if (!fits[i]) continue;
-      double shrinks = 1.0;
-      for (const Suspect* suspect : lists[i]) shrinks *= suspect->shrinks;
-      const double cost = in_measured_units(fits[i]->cost, shrinks);
+      const double cost = in_measured_units(fits[i]->cost, shrinking(lists[i]));
       all.push_back({lists[i], *std::move(fits[i]), cost, text_of(lists[i])});
     }
+  }
+  /// The lists whose rough cost is least; all, if there is none.
+  [[nodiscard]] static Together most_promising(const Refits& refits, Together lists,
+                                               std::size_t most) {
+    if (lists.size() <= most) return lists;
+    std::vector<double> cost(lists.size(), HUGE_VAL);
+    for_each_piece(static_cast<int>(lists.size()), number_of_threads(0), [&](int i, int) {
+      const auto& list = lists[static_cast<std::size_t>(i)];
+      const std::optional<double> rough = refits.rough_cost(list);
+      if (!rough) return;
+      cost[static_cast<std::size_t>(i)] = in_measured_units(*rough, shrinking(list));
+    });
+    if (std::none_of(cost.begin(), cost.end(), [](double of) { return std::isfinite(of); })) {
+      return lists;
+    }
+    std::vector<std::size_t> order(lists.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return cost[a] < cost[b]; });
+    Together best;
+    for (std::size_t i = 0; i < most; ++i) best.push_back(std::move(lists[order[i]]));
+    return best;
+  }
+  /// The factor by which suspects together multiply lengths.
+  [[nodiscard]] static double shrinking(const std::vector<const Suspect*>& suspects) {
+    double shrinks = 1.0;
+    for (const Suspect* suspect : suspects) shrinks *= suspect->shrinks;
+    return shrinks;
   }
   /// A cost without what smaller lengths take off; larger ones need not make residuals larger.
   [[nodiscard]] static double in_measured_units(double cost, double factor) {
@@ -193,9 +220,9 @@ class Weighing {
     }
     return lists;
   }
-  /// Combinations: sought with few samples, the best of them fitted to all.
+  /// Combinations: sought roughly, the best of them with few samples, and the best of those fitted to all.
   void combine() {
-    constexpr std::size_t kFew = 30, kWide = 6, kNarrow = 3, kBest = 8;
+    constexpr std::size_t kFew = 30, kWide = 6, kNarrow = 3, kBest = 8, kFitted = 40;
     const Refits few = refits_.with_at_most(kFew);
     std::vector<Explanation> sought;
     Together alone;
@@ -220,14 +247,18 @@ class Weighing {
       Together lists;
       for (const Explanation* of : best) lists.push_back(of->suspects);
       attempt(lists);
-      combined_ = static_cast<int>(std::ssize(sought));
     };
-    append(few, signs_together(), sought);
+    const auto seek = [&](Together lists) {
+      if (lists.empty()) return;
+      combined_ += lists.front().size() > 1 ? static_cast<int>(std::ssize(lists)) : 0;
+      append(few, most_promising(few, std::move(lists), kFitted), sought);
+    };
+    seek(signs_together());
     fit_best();
     if (is_explained()) return;
-    append(few, alone, sought);
+    seek(alone);
     for (const std::size_t widest : {kWide, kNarrow}) {
-      append(few, extended(sought, widest), sought);
+      seek(extended(sought, widest));
       fit_best();
       if (is_explained()) return;
     }

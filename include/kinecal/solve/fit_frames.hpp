@@ -16,6 +16,7 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
+#include "kinecal/solve/pose_search.hpp"
 
 namespace kinecal {
 
@@ -65,17 +66,18 @@ struct FrameFits {
   int starts = 0;                    ///< of all of them
 };
 
-/// Least number of starts for these frames: 60 if one of them rotates, else none.
-[[nodiscard]] int grid_size(std::span<const UnknownFrame> frames);
+/// True if one of these frames rotates: a search begins with rotations.
+[[nodiscard]] bool any_turns(std::span<const UnknownFrame> frames);
 
-/// Fits frames to a few samples from a grid of orientations: 60 at a time, up to 300, until five
-/// fits have ended at the lowest minimum.
+/// Fits frames to a few samples from a grid of orientations: a round at a time, until five fits have
+/// ended at the lowest minimum.
 /// @param excerpt  the problem with a few of its samples
 /// @param values   of all parameters of the problem's table
 /// @param threads  number of threads; zero: one per core.  Does not affect the result
 /// @returns        no minima if the cost is finite nowhere
 [[nodiscard]] FrameFits fit_frames(const AnyProblem& excerpt, std::span<const UnknownFrame> frames,
-                                   const Eigen::VectorXd& values, int threads);
+                                   const Eigen::VectorXd& values, int threads,
+                                   const PoseSearch& search = {});
 
 }  // namespace detail
 

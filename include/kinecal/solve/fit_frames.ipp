@@ -11,7 +11,7 @@
 
 namespace kinecal::detail {
 
-inline constexpr int kGrid = 60, kRounds = 5;
+inline constexpr int kGrid = 300;  // rotations of the finest grid
 
 KINECAL_INLINE UnknownFrame unknown_frame(const std::string& name, const ParameterTable& table,
                                           const FreeSet& free, bool has_guess) {
@@ -80,24 +80,23 @@ KINECAL_INLINE bool any_turned(std::span<const UnknownFrame> frames, bool has_gu
   return all;
 }
 
-KINECAL_INLINE int grid_size(std::span<const UnknownFrame> frames) {
-  const bool turns = std::any_of(frames.begin(), frames.end(),
-                                 [](const UnknownFrame& frame) { return frame.turns(); });
-  return turns ? kGrid : 0;
+KINECAL_INLINE bool any_turns(std::span<const UnknownFrame> frames) {
+  return std::any_of(frames.begin(), frames.end(),
+                     [](const UnknownFrame& frame) { return frame.turns(); });
 }
 
-/// The values of a start.  A round takes every fifth rotation of a finer grid, which is still even.
+/// The values of a start.  A round takes every n-th rotation of a finer grid, which is still even.
 /// Each frame walks the grid with its own stride, so combinations of several frames are spread,
 /// too.
-[[nodiscard]] inline Eigen::VectorXd start_values(std::span<const UnknownFrame> frames, int start,
-                                                  int round, Eigen::VectorXd values) {
+/// @param index  in that grid
+[[nodiscard]] inline Eigen::VectorXd start_values(std::span<const UnknownFrame> frames, int index,
+                                                  Eigen::VectorXd values) {
   constexpr std::array<int, 4> kStrides = {1, 89, 47, 161};  // share no factor with the count
-  constexpr int kCount = kRounds * kGrid;
   std::size_t turning = 0;
   for (const UnknownFrame& frame : frames) {
     if (!frame.turns()) continue;
     const int stride = kStrides[turning++ % kStrides.size()];
-    set_grid_rotation(frame, (kRounds * start + round) * stride % kCount, kCount, values);
+    set_grid_rotation(frame, index * stride % kGrid, kGrid, values);
   }
   return values;
 }
@@ -119,39 +118,42 @@ inline void go_on(std::vector<FittedFrames>& fits, int iterations, Evaluators& e
 /// of the time.
 [[nodiscard]] inline std::vector<FittedFrames> fit_round(Evaluators& evaluators,
                                                          std::span<const UnknownFrame> frames,
-                                                         const Eigen::VectorXd& values, int round) {
-  constexpr int kFirst = 6, kMost = 40;  // iterations
-  constexpr std::size_t kGoOn = 15;
+                                                         const Eigen::VectorXd& values, int round,
+                                                         const PoseSearch& search) {
+  constexpr int kMost = 40;  // iterations
   std::vector<FittedFrames> fits;
-  for (int start = 0; start < kGrid; ++start) {
-    fits.push_back({0.0, start_values(frames, start, round, values), 1});
+  const int step = kGrid / search.starts;
+  for (int start = 0; start < search.starts; ++start) {
+    fits.push_back({0.0, start_values(frames, step * start + round, values), 1});
   }
-  go_on(fits, kFirst, evaluators, frames);
+  go_on(fits, search.first, evaluators, frames);
   std::stable_sort(fits.begin(), fits.end(),
                    [](const auto& a, const auto& b) { return a.cost < b.cost; });
-  fits.resize(kGoOn);
+  fits.resize(std::min(fits.size(), search.kept));
   go_on(fits, kMost, evaluators, frames);
   return fits;
 }
 
 KINECAL_INLINE FrameFits fit_frames(const AnyProblem& excerpt, std::span<const UnknownFrame> frames,
-                                    const Eigen::VectorXd& values, int threads) {
+                                    const Eigen::VectorXd& values, int threads,
+                                    const PoseSearch& search) {
   constexpr int kOftenEnough = 5;
   FrameFits all;
-  if (grid_size(frames) == 0) return all;
+  if (!any_turns(frames)) return all;
   std::vector<int> columns;
   for (const UnknownFrame& frame : frames) {
     std::copy_if(frame.axes.begin(), frame.axes.end(), std::back_inserter(columns),
                  [](int parameter) { return parameter >= 0; });
   }
   const FreeSet free(columns, excerpt.table().size());
-  Evaluators evaluators(static_cast<std::size_t>(std::min(number_of_threads(threads), kGrid)));
+  Evaluators evaluators(
+      static_cast<std::size_t>(std::min(number_of_threads(threads), search.starts)));
   for (auto& evaluator : evaluators) evaluator = excerpt.evaluator(free, 1);
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<FittedFrames> fits = fit_round(evaluators, frames, values, round);
+  for (int round = 0; round < search.rounds; ++round) {
+    std::vector<FittedFrames> fits = fit_round(evaluators, frames, values, round, search);
     std::move(fits.begin(), fits.end(), std::back_inserter(all.minima));
     all.minima = distinct(std::move(all.minima), frames);
-    all.starts += kGrid;
+    all.starts += search.starts;
     if (!all.minima.empty() && all.minima.front().starts >= kOftenEnough) break;
   }
   return all;

@@ -12,6 +12,7 @@
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/samples/progress_meter.hpp"
+#include "kinecal/solve/pose_search.hpp"
 #include "kinecal/solve/start_summary.hpp"
 
 namespace kinecal {
@@ -34,6 +35,7 @@ struct SolveOptions {
   CostForm form = CostForm::compressed;  ///< how Ceres receives the samples
   int threads = 0;                       ///< zero: one per core; does not affect the result
   int random_starts = 0;                 ///< of calibrate(), besides the one given
+  PoseSearch search = {};                ///< of calibrate(), for unknown poses
   bool hold_undetermined = true;  ///< of calibrate(): see settle.hpp; does not affect the cost
   /// Called after each iteration with its number and the current cost; a rejected step leaves the
   /// cost as it was.

@@ -45,7 +45,8 @@ class Starts {
   }
 
   /// Searches for the poses of frames and solves from the best few fits.
-  void search(const AnyProblem& excerpt, std::span<const UnknownFrame> frames,
+  /// @returns  true if one of these solves converged
+  bool search(const AnyProblem& excerpt, std::span<const UnknownFrame> frames,
               const Eigen::VectorXd& from) {
     summary_.frames.clear();
     for (const UnknownFrame& frame : frames) {
@@ -54,14 +55,16 @@ class Starts {
     std::vector<Eigen::VectorXd> starts;
     const auto evaluator = problem_.evaluator(free_, options_.threads);
     double least = 0.0;
-    const FrameFits fits = fit_frames(excerpt, frames, from, options_.threads);
+    const FrameFits fits = fit_frames(excerpt, frames, from, options_.threads, options_.search);
     summary_.starts += fits.starts;
     for (const FittedFrames& fit : fits.minima) {
       if (starts.empty()) least = fit.cost;
-      if (starts.size() == kFinished || fit.cost > kWorthFinishing * least + floor_) break;
+      if (starts.size() == options_.search.finished || fit.cost > kWorthFinishing * least + floor_)
+        break;
       if (std::isfinite(cost_at(*evaluator, fit.values))) starts.push_back(fit.values);
     }
     solve_all(starts);
+    return best_.result.converged;
   }
 
   /// Solves from random starts around that of the best solve so far.
@@ -97,7 +100,6 @@ class Starts {
   }
 
  private:
-  static constexpr std::size_t kFinished = 4;       // fits that are solved with everything free
   static constexpr double kWorthFinishing = 100.0;  // of the least cost: ten times the error
   static constexpr double kRounding = 1e-16;        // of the cost at the start
 
@@ -186,8 +188,8 @@ KINECAL_INLINE StepResult solve_from_starts(const AnyProblem& problem, const Fre
   std::vector<UnknownFrame> without_guess;
   std::copy_if(unknown.begin(), unknown.end(), std::back_inserter(without_guess),
                [](const UnknownFrame& frame) { return !frame.has_guess; });
-  if (detail::grid_size(without_guess) > 0) starts.search(few, without_guess, from);
-  starts.solve_plain(from, unknown);
+  const bool searched = detail::any_turns(without_guess) && starts.search(few, without_guess, from);
+  if (options.search.plain || !searched) starts.solve_plain(from, unknown);
   if (without_guess.size() < unknown.size() && starts.ended_badly(unknown, from)) {
     starts.search(few, unknown, from);
   }

@@ -18,16 +18,23 @@ namespace {
 /// Least share of a column's effect that the others must leave, or it is one of their combinations.
 constexpr double kOwnShare = 1e-4;
 
-/// The inverse of a matrix of information; empty if it is singular.
+/// Solves with a matrix of information; empty if it is singular.
 /// @param scale  (columns) lengths of the columns before others were taken off
-[[nodiscard]] Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& squared,
-                                             const Eigen::VectorXd& scale) {
+template <class Right>
+[[nodiscard]] Right scaled_solution(const Eigen::MatrixXd& squared, const Eigen::VectorXd& scale,
+                                    const Right& right) {
   const Eigen::VectorXd by = scale.cwiseInverse();
   const Ldlt ldlt(by.asDiagonal() * squared * by.asDiagonal());
   if (ldlt.least_pivot() <= 0.1 * kOwnShare) return {};
+  const Right scaled = by.asDiagonal() * right;
+  return by.asDiagonal() * Right(ldlt.solve(scaled));
+}
+
+/// The inverse of a matrix of information; empty if it is singular.
+[[nodiscard]] Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& squared,
+                                             const Eigen::VectorXd& scale) {
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(squared.rows(), squared.cols());
-  const Eigen::MatrixXd inverse = ldlt.solve(identity);
-  return by.asDiagonal() * inverse * by.asDiagonal();
+  return scaled_solution(squared, scale, identity);
 }
 
 [[nodiscard]] std::vector<int> joined(std::vector<int> columns, const std::vector<int>& more) {
@@ -45,23 +52,48 @@ ParameterSearch::ParameterSearch(const LinearFit& fit, const SearchPoses& poses,
   const Eigen::VectorXd root = fit.loss.cwiseSqrt();
   jacobian_ = root.asDiagonal() * fit.jacobian;
   residual_ = root.cwiseProduct(fit.residual);
-  squared_ = jacobian_.transpose() * jacobian_ + fit.prior_hessian;
-  gradient_ = jacobian_.transpose() * residual_ + fit.prior_gradient;
-  scale_ = squared_.diagonal().cwiseSqrt();
   const auto rows = static_cast<std::size_t>(residual_.size());
   pose_.resize(rows);
-  fold_.resize(rows);
-  if (!poses.region.empty()) region_.resize(rows);
+  std::vector<int> fold(rows), region(poses.region.empty() ? 0 : rows);
   for (const RowBlock& block : fit.blocks) {
     const auto sample = static_cast<std::size_t>(block.sample);
     for (Eigen::Index row = block.first; row < block.first + block.size; ++row) {
       const auto r = static_cast<std::size_t>(row);
       pose_[r] = poses.pose[sample];
-      fold_[r] = poses.fold[sample];
-      if (!region_.empty()) region_[r] = poses.region[sample];
+      fold[r] = poses.fold[sample];
+      if (!region.empty()) region[r] = poses.region[sample];
       poses_ = std::max(poses_, pose_[r] + 1);
     }
   }
+  folds_ = parts(fold);
+  regions_ = parts(region);
+  squared_ = fit.prior_hessian;
+  gradient_ = fit.prior_gradient;
+  for (const Part& part : folds_) {
+    squared_ += part.squared;
+    gradient_ += part.gradient;
+  }
+  scale_ = squared_.diagonal().cwiseSqrt();
+}
+
+std::vector<ParameterSearch::Part> ParameterSearch::parts(const std::vector<int>& part) const {
+  std::vector<std::vector<int>> rows;
+  for (std::size_t row = 0; row < part.size(); ++row) {
+    const auto of = static_cast<std::size_t>(part[row]);
+    if (of >= rows.size()) rows.resize(of + 1);
+    rows[of].push_back(static_cast<int>(row));
+  }
+  std::erase_if(rows, [](const std::vector<int>& of) { return of.empty(); });
+  std::vector<Part> all;
+  for (const std::vector<int>& of : rows) {
+    Part& one = all.emplace_back();
+    for (const int row : of) one.pose.push_back(pose_[static_cast<std::size_t>(row)]);
+    one.jacobian = jacobian_(of, Eigen::all);
+    one.residual = residual_(of);
+    one.squared = one.jacobian.transpose() * one.jacobian;
+    one.gradient = one.jacobian.transpose() * one.residual;
+  }
+  return all;
 }
 
 std::vector<int> ParameterSearch::independent(const std::vector<int>& columns) const {
@@ -107,28 +139,20 @@ bool ParameterSearch::is_plausible(const Whole& whole, std::size_t from) const {
 }
 
 Eigen::VectorXd ParameterSearch::predicted(const std::vector<int>& columns,
-                                           const std::vector<int>& part) const {
-  const int parts = *std::max_element(part.begin(), part.end()) + 1;
-  std::vector<std::vector<Eigen::Index>> rows(static_cast<std::size_t>(parts));
-  for (std::size_t row = 0; row < part.size(); ++row) {
-    rows[static_cast<std::size_t>(part[row])].push_back(static_cast<Eigen::Index>(row));
-  }
+                                           const std::vector<Part>& parts) const {
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(poses_);
   const Eigen::MatrixXd squared = squared_(columns, columns);
   const Eigen::VectorXd gradient = gradient_(columns), scale = scale_(columns);
-  for (const std::vector<Eigen::Index>& out : rows) {
-    if (out.empty()) continue;
-    Eigen::VectorXd left = residual_(out);
+  for (const Part& out : parts) {
+    Eigen::VectorXd left = out.residual;
     if (!columns.empty()) {
-      const Eigen::MatrixXd jacobian = jacobian_(out, columns);
-      const Eigen::MatrixXd inverse =
-          detail::scaled_inverse(squared - jacobian.transpose() * jacobian, scale);
-      if (inverse.size() == 0) return {};
-      left -= jacobian * (inverse * (gradient - jacobian.transpose() * left));
+      const Eigen::VectorXd change = detail::scaled_solution<Eigen::VectorXd>(
+          squared - out.squared(columns, columns), scale, out.gradient(columns) - gradient);
+      if (change.size() == 0) return {};
+      left += out.jacobian(Eigen::all, columns) * change;
     }
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const double value = left(static_cast<Eigen::Index>(i));
-      squares(pose_[static_cast<std::size_t>(out[i])]) += value * value;
+    for (Eigen::Index i = 0; i < left.size(); ++i) {
+      squares(out.pose[static_cast<std::size_t>(i)]) += left(i) * left(i);
     }
   }
   return squares;
@@ -147,10 +171,10 @@ double ParameterSearch::certainty(const Eigen::VectorXd& before,
 
 double ParameterSearch::certainty_of(const std::vector<int>& with,
                                      const std::vector<int>& without) const {
-  const double sure = certainty(predicted(without, fold_), predicted(with, fold_));
-  if (region_.empty() || !(sure > kSure)) return sure;
+  const double sure = certainty(predicted(without, folds_), predicted(with, folds_));
+  if (regions_.empty() || !(sure > kSure)) return sure;
   constexpr double kNotWorse = -1.0;  // what helps inside the poses must not harm beyond them
-  const double beyond = certainty(predicted(without, region_), predicted(with, region_));
+  const double beyond = certainty(predicted(without, regions_), predicted(with, regions_));
   return beyond > kNotWorse ? sure : beyond;
 }
 

@@ -117,6 +117,9 @@ class ParameterSearch {
   };
 
   [[nodiscard]] Whole whole_fit(const std::vector<int>& columns) const;
+  /// @param cross  whole.inverse * J_whole^T J_own
+  [[nodiscard]] Gain gain_of(const Whole& whole, const SearchCandidate& candidate, int number,
+                             const Eigen::MatrixXd& cross) const;
   [[nodiscard]] Gain gain_of(const Whole& whole, const SearchCandidate& candidate,
                              int number) const;
   [[nodiscard]] std::vector<Gain> gains(const Whole& whole, const Candidates& candidates,
@@ -126,9 +129,19 @@ class ParameterSearch {
   /// True if every change and deviation is plausible.
   /// @param from  first of the columns to look at
   [[nodiscard]] bool is_plausible(const Whole& whole, std::size_t from) const;
+  /// Rows that are held out together, and their sums.
+  struct Part {
+    std::vector<int> pose;     ///< of each row
+    Eigen::MatrixXd jacobian;  ///< (rows x columns) weighted
+    Eigen::VectorXd residual;  ///< (rows) weighted
+    Eigen::MatrixXd squared;   ///< J^T J
+    Eigen::VectorXd gradient;  ///< J^T r
+  };
+  /// @param part  of each row
+  [[nodiscard]] std::vector<Part> parts(const std::vector<int>& part) const;
   /// (poses) sum of squared weighted residuals, each pose predicted without its part; empty if undetermined.
   [[nodiscard]] Eigen::VectorXd predicted(const std::vector<int>& columns,
-                                          const std::vector<int>& part) const;
+                                          const std::vector<Part>& parts) const;
   /// Fall of held-out errors in standard errors.
   [[nodiscard]] double certainty(const Eigen::VectorXd& before, const Eigen::VectorXd& after) const;
   /// Fall of the error on held-out poses by some columns, in its standard errors; the smaller one of poses and regions,
@@ -152,14 +165,15 @@ class ParameterSearch {
 
   static constexpr double kSure = 1.0;  // standard errors
 
-  Eigen::MatrixXd jacobian_;               ///< (rows x columns) weighted
-  Eigen::VectorXd residual_;               ///< (rows) weighted
-  Eigen::MatrixXd squared_;                ///< J^T J, priors included
-  Eigen::VectorXd gradient_;               ///< J^T r, priors included
-  Eigen::VectorXd scale_;                  ///< (columns) lengths
-  Eigen::VectorXd largest_, smallest_;     ///< (columns)
-  std::vector<int> pose_, fold_, region_;  ///< of each row
-  double weight_ = 0.0;                    ///< of all rows
+  Eigen::MatrixXd jacobian_;            ///< (rows x columns) weighted
+  Eigen::VectorXd residual_;            ///< (rows) weighted
+  Eigen::MatrixXd squared_;             ///< J^T J, priors included
+  Eigen::VectorXd gradient_;            ///< J^T r, priors included
+  Eigen::VectorXd scale_;               ///< (columns) lengths
+  Eigen::VectorXd largest_, smallest_;  ///< (columns)
+  std::vector<int> pose_;               ///< of each row
+  std::vector<Part> folds_, regions_;
+  double weight_ = 0.0;  ///< of all rows
   int poses_ = 0;
 };
 

@@ -51,15 +51,20 @@ double ParameterSearch::chance_by_poses(const Whole& whole,
 
 ParameterSearch::Gain ParameterSearch::gain_of(const Whole& whole, const SearchCandidate& candidate,
                                                int number) const {
+  if (!whole.determined) return {number};
+  const Eigen::MatrixXd cross = whole.inverse * squared_(whole.columns, candidate.columns);
+  return gain_of(whole, candidate, number, cross);
+}
+
+ParameterSearch::Gain ParameterSearch::gain_of(const Whole& whole, const SearchCandidate& candidate,
+                                               int number, const Eigen::MatrixXd& cross) const {
   Gain gain{number};
   if (!whole.determined) return gain;
   const std::vector<int>& own = candidate.columns;
   const auto q = static_cast<double>(own.size());
   Eigen::MatrixXd rest = squared_(own, own);
   Eigen::VectorXd slope = gradient_(own);
-  Eigen::MatrixXd cross;
   if (!whole.columns.empty()) {
-    cross = whole.inverse * squared_(whole.columns, own);
     rest -= squared_(own, whole.columns) * cross;
     slope -= cross.transpose() * gradient_(whole.columns);
   }
@@ -79,6 +84,8 @@ std::vector<ParameterSearch::Gain> ParameterSearch::gains(
     const Whole& whole, const std::vector<SearchCandidate>& candidates,
     const std::vector<int>& chosen) const {
   std::vector<Gain> all;
+  if (!whole.determined) return all;
+  const Eigen::MatrixXd cross = whole.inverse * squared_(whole.columns, Eigen::all);
   for (int k = 0; k < static_cast<int>(candidates.size()); ++k) {
     if (std::find(chosen.begin(), chosen.end(), k) != chosen.end()) continue;
     const std::vector<int>& own = candidates[static_cast<std::size_t>(k)].columns;
@@ -86,7 +93,8 @@ std::vector<ParameterSearch::Gain> ParameterSearch::gains(
       return std::find(whole.columns.begin(), whole.columns.end(), c) != whole.columns.end();
     };
     if (own.empty() || std::any_of(own.begin(), own.end(), is_free)) continue;
-    all.push_back(gain_of(whole, candidates[static_cast<std::size_t>(k)], k));
+    all.push_back(
+        gain_of(whole, candidates[static_cast<std::size_t>(k)], k, cross(Eigen::all, own)));
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const Gain& a, const Gain& b) { return a.squares > b.squares; });

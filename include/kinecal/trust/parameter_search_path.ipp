@@ -22,9 +22,9 @@ SearchFit ParameterSearch::fit_of(const std::vector<int>& base, const Candidates
   };
   SearchFit fit;
   fit.fitted = std::sqrt(whole_fit(columns).squares / weight_);
-  const Eigen::VectorXd squares = predicted(columns, fold_);
+  const Eigen::VectorXd squares = predicted(columns, folds_);
   fit.held_out = root(squares);
-  fit.region = region_.empty() ? 0.0 : root(predicted(columns, region_));
+  fit.region = regions_.empty() ? 0.0 : root(predicted(columns, regions_));
   fit.columns = static_cast<int>(columns.size());
   const auto n = static_cast<double>(squares.size());
   if (n > 1.0 && fit.held_out > 0.0) {  // d sqrt(s / w) = ds / (2 w sqrt(s / w))

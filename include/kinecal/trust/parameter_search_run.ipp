@@ -94,9 +94,9 @@ std::vector<int> ParameterSearch::like(const Whole& without, const Candidates& c
     return detail::joined(without.columns, candidates[static_cast<std::size_t>(c)].columns);
   };
   const Gain own = gain_of(without, candidates[static_cast<std::size_t>(k)], k);
-  const Eigen::VectorXd of_own = predicted(with(k), fold_);
+  const Eigen::VectorXd of_own = predicted(with(k), folds_);
   const auto is_as_good = [&](const std::vector<int>& other) {
-    const Eigen::VectorXd of_other = predicted(other, fold_);
+    const Eigen::VectorXd of_other = predicted(other, folds_);
     return (of_other.size() > 0 && of_other.sum() <= kAsWell * of_own.sum()) ||
            certainty(of_other, of_own) <= kSure || certainty_of(with(k), other) <= kSure;
   };
