@@ -9,6 +9,7 @@
 #include "kinecal/solve/compressed_cost.hpp"
 #include "kinecal/solve/fit_frames.hpp"
 #include "kinecal/solve/linear_fit.hpp"
+#include "kinecal/solve/pose_search.hpp"
 #include "kinecal/solve/rotation_grid.hpp"
 #include "kinecal/solve/settle.hpp"
 #include "kinecal/solve/shards.hpp"

@@ -283,7 +283,8 @@ Calibration with_samples(const Calibration& assembled, std::span<const Sample> s
     other.excerpt = step.excerpt->without_samples();
     other.of_excerpt = step.of_excerpt;
     for (const int i : step.of_excerpt) {
-      other.excerpt->add_sample(samples[static_cast<std::size_t>(i)]);
+      other.excerpt->add_sample(
+          detail::excerpt_of(*other.problem, samples[static_cast<std::size_t>(i)]));
     }
   }
   return calibration;

@@ -96,6 +96,19 @@ inline void rectify(Observation& seen, const AnySensor& camera) {
   seen.camera->p = {s[0], 0, s[2], 0, 0, s[1], s[3], 0, 0, 0, 1, 0};
 }
 
+/// A sample as an excerpt has it: with few features, and those of a camera rectified.
+/// @param problem  that takes it
+[[nodiscard]] inline Sample excerpt_of(const AnyProblem& problem, const Sample& sample) {
+  Sample few = with_few_features(problem.paired(sample).value_or(sample));
+  for (Observation& seen : few.observations) {
+    for (const MountedSensor& sensor : problem.sensors()) {
+      const bool is_it = sensor.mount().name == seen.sensor;
+      if (is_it && sensor.sensor().delivers(Quantity::pixel)) rectify(seen, sensor.sensor());
+    }
+  }
+  return few;
+}
+
 /// Samples of an excerpt.
 struct FewSamples {
   std::vector<Sample> samples;
@@ -116,15 +129,8 @@ struct FewSamples {
   FewSamples few;
   for (const auto& [sensors, indices] : kinds) {
     for (const std::size_t i : spread(indices.size(), kOfEachKind)) {
-      const Sample& sample = samples[indices[i]];
       few.numbers.push_back(static_cast<int>(indices[i]));
-      few.samples.push_back(with_few_features(problem.paired(sample).value_or(sample)));
-      for (Observation& seen : few.samples.back().observations) {
-        for (const MountedSensor& sensor : problem.sensors()) {
-          const bool is_it = sensor.mount().name == seen.sensor;
-          if (is_it && sensor.sensor().delivers(Quantity::pixel)) rectify(seen, sensor.sensor());
-        }
-      }
+      few.samples.push_back(excerpt_of(problem, samples[indices[i]]));
     }
   }
   return few;

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <set>
 
@@ -86,12 +86,12 @@ class Weighing {
     }
     attempt(alone);
     const bool is_right_as_given = now_ && fits(*now_) && now_->implausible == 0;
-    if (combines && !is_right_as_given && !is_explained()) {
+    if (combines && !is_explained()) {
       in_part_ = suspects_in_part(refits_, suspects_);
       Together parts;
       for (const Suspect& suspect : in_part_) parts.push_back({&suspect});
       attempt(parts);
-      if (!is_explained()) combine();
+      if (!is_right_as_given && !is_explained()) combine();
     }
     Explained explained;
     explained.tried = static_cast<int>(std::ssize(suspects_)) + combined_;
@@ -122,27 +122,18 @@ class Weighing {
       all.push_back({lists[i], *std::move(fits[i]), cost, text_of(lists[i])});
     }
   }
-  /// The lists whose rough cost is least; all, if there is none.
-  [[nodiscard]] static Together most_promising(const Refits& refits, Together lists,
-                                               std::size_t most) {
-    if (lists.size() <= most) return lists;
-    std::vector<double> cost(lists.size(), HUGE_VAL);
+  /// Lists in the order of their rough costs; in that of the lists, where there are none.
+  [[nodiscard]] static Together by_rough_cost(const Refits& refits, Together lists) {
+    std::vector<std::pair<double, std::size_t>> order(lists.size());
     for_each_piece(static_cast<int>(lists.size()), number_of_threads(0), [&](int i, int) {
-      const auto& list = lists[static_cast<std::size_t>(i)];
-      const std::optional<double> rough = refits.rough_cost(list);
-      if (!rough) return;
-      cost[static_cast<std::size_t>(i)] = in_measured_units(*rough, shrinking(list));
+      const auto at = static_cast<std::size_t>(i);
+      const std::optional<double> rough = refits.rough_cost(lists[at]);
+      order[at] = {rough ? in_measured_units(*rough, shrinking(lists[at])) : HUGE_VAL, at};
     });
-    if (std::none_of(cost.begin(), cost.end(), [](double of) { return std::isfinite(of); })) {
-      return lists;
-    }
-    std::vector<std::size_t> order(lists.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return cost[a] < cost[b]; });
-    Together best;
-    for (std::size_t i = 0; i < most; ++i) best.push_back(std::move(lists[order[i]]));
-    return best;
+    std::sort(order.begin(), order.end());
+    Together sorted;
+    for (const auto& [cost, at] : order) sorted.push_back(std::move(lists[at]));
+    return sorted;
   }
   /// The factor by which suspects together multiply lengths.
   [[nodiscard]] static double shrinking(const std::vector<const Suspect*>& suspects) {
@@ -178,38 +169,44 @@ class Weighing {
                        [&](const Explanation& of) { return explains(of); });
   }
 
-  /// All combinations of signs, if there are not more than eight joints: combine() finds what helps, else.
+  /// Signs together: all combinations of up to eight joints, two and three of more.
   [[nodiscard]] Together signs_together() const {
-    constexpr std::size_t kMost = 8;
+    constexpr std::size_t kAll = 8, kThree = 3, kMost = 16;
     std::vector<const Suspect*> signs;
     for (const Suspect& suspect : suspects_) {
-      if (!suspect.sign_of.empty()) signs.push_back(&suspect);
+      if (!suspect.sign_of.empty() && signs.size() < kMost) signs.push_back(&suspect);
     }
     Together lists;
-    if (signs.size() > kMost) return lists;
     for (unsigned set = 1; set < (1u << signs.size()); ++set) {
-      std::vector<const Suspect*> together;
+      const auto count = static_cast<std::size_t>(std::popcount(set));
+      if (count < 2 || (signs.size() > kAll && count > kThree)) continue;
+      std::vector<const Suspect*>& together = lists.emplace_back();
       for (std::size_t i = 0; i < signs.size(); ++i) {
         if ((set >> i & 1u) != 0) together.push_back(signs[i]);
       }
-      if (together.size() > 1) lists.push_back(together);
     }
     return lists;
   }
   /// What helps most, each with each other suspect.
-  /// @param widest  so many of what helps most
-  [[nodiscard]] Together extended(const std::vector<Explanation>& all, std::size_t widest) const {
+  /// @param roughly  in the order of their rough costs: what cannot be solved alone can be half of what is wrong
+  /// @param widest   so many of what helps most
+  [[nodiscard]] Together extended(const std::vector<Explanation>& all, const Together& roughly,
+                                  std::size_t widest) const {
     std::vector<const Explanation*> best;
-    for (const Explanation& of : all) {
-      if (!of.suspects.front()->scale) best.push_back(&of);
-    }
+    for (const Explanation& of : all) best.push_back(&of);
     std::stable_sort(best.begin(), best.end(), fits_better);
-    best.resize(std::min(best.size(), widest));
+    Together begins;
+    for (std::size_t i = 0; i < std::min(best.size(), widest / 2); ++i) {
+      begins.push_back(best[i]->suspects);
+    }
+    for (const auto& list : roughly) {
+      if (begins.size() == widest) break;
+      if (std::find(begins.begin(), begins.end(), list) == begins.end()) begins.push_back(list);
+    }
     Together lists;
     std::set<std::vector<const Suspect*>> seen;
-    for (const Explanation* begin : best) {
+    for (const auto& list : begins) {
       for (const Suspect& suspect : suspects_) {
-        const auto& list = begin->suspects;
         if (suspect.scale || std::find(list.begin(), list.end(), &suspect) != list.end()) continue;
         std::vector<const Suspect*> together = list;
         together.push_back(&suspect);
@@ -222,7 +219,7 @@ class Weighing {
   }
   /// Combinations: sought roughly, the best of them with few samples, and the best of those fitted to all.
   void combine() {
-    constexpr std::size_t kFew = 30, kWide = 6, kNarrow = 3, kBest = 8, kFitted = 40;
+    constexpr std::size_t kFew = 30, kWide = 8, kNarrow = 4, kBest = 8, kFitted = 40;
     const Refits few = refits_.with_at_most(kFew);
     std::vector<Explanation> sought;
     Together alone;
@@ -248,17 +245,21 @@ class Weighing {
       for (const Explanation* of : best) lists.push_back(of->suspects);
       attempt(lists);
     };
+    Together roughly;  // of the last ones that were sought
     const auto seek = [&](Together lists) {
       if (lists.empty()) return;
       combined_ += lists.front().size() > 1 ? static_cast<int>(std::ssize(lists)) : 0;
-      append(few, most_promising(few, std::move(lists), kFitted), sought);
+      roughly = by_rough_cost(few, std::move(lists));
+      const std::size_t most = few.is_in_one_step() ? kFitted : roughly.size();
+      const auto last = static_cast<std::ptrdiff_t>(std::min(roughly.size(), most));
+      append(few, {roughly.begin(), roughly.begin() + last}, sought);
     };
     seek(signs_together());
     fit_best();
     if (is_explained()) return;
     seek(alone);
     for (const std::size_t widest : {kWide, kNarrow}) {
-      seek(extended(sought, widest));
+      seek(extended(sought, roughly, widest));
       fit_best();
       if (is_explained()) return;
     }

@@ -27,10 +27,19 @@ void judge_impossible(const CalibrationInput& input, JudgedResult& judged) {
   for (const std::string& error : offsets.errors) judged.judgement.add(Grade::do_not_use, error);
 }
 
-/// True if so many samples were left out that something is wrong with more than single captures.
-[[nodiscard]] bool many_are_left_out(std::size_t used, std::size_t all) {
+/// True if so many samples were left out, or are bad, that something is wrong with more than single captures.
+/// @param used  samples of the fit
+/// @param all   samples that were given
+[[nodiscard]] bool many_are_bad(std::size_t used, std::size_t all,
+                                const std::vector<Assessment>& steps) {
   constexpr std::size_t kFewest = 5, kTenth = 10;
-  return all - used >= kFewest && kTenth * (all - used) >= all;
+  std::size_t bad = all - used;
+  if (!steps.empty()) {
+    const std::vector<CaptureError>& captures = steps.back().captures;
+    bad += static_cast<std::size_t>(std::count_if(
+        captures.begin(), captures.end(), [](const CaptureError& error) { return error.bad; }));
+  }
+  return bad >= kFewest && kTenth * bad >= all;
 }
 
 /// True if nothing says how large the residuals may be: those of poses, without a sigma.
@@ -56,10 +65,10 @@ void judge_fit(const CalibrationInput& input, std::span<const Sample> all,
   const bool is_solved = judged.result.converged && !judged.assessments.empty();
   const bool is_bad = !is_solved || fits_badly(judged.assessments.back()) ||
                       is_implausible(input.calibration.steps.back(), judged.result.table);
-  const bool leaves_out = many_are_left_out(input.samples.size(), all.size());
-  if (!is_bad && !leaves_out && !has_unknown_noise(judged.assessments.back())) return;
-  const Explained found = explain_fit(input.config, input.robot, leaves_out ? all : input.samples,
-                                      {.own = own, .combines = is_bad || leaves_out, .solve = {}});
+  const bool has_bad = many_are_bad(input.samples.size(), all.size(), judged.assessments);
+  if (!is_bad && !has_bad && !has_unknown_noise(judged.assessments.back())) return;
+  const Explained found = explain_fit(input.config, input.robot, has_bad ? all : input.samples,
+                                      {.own = own, .combines = is_bad || has_bad, .solve = {}});
   if (!found.cause.empty()) {
     const bool refuse = is_bad || found.left < kThird;
     judged.judgement.add_causes(refuse ? Grade::do_not_use : Grade::use_with_care,

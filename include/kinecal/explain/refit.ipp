@@ -18,7 +18,7 @@
 #include "kinecal/errors/pose_to_pose.hpp"
 #include "kinecal/explain/explain_fit.hpp"
 #include "kinecal/explain/suspect.hpp"
-#include "kinecal/solve/frame_fit.ipp"
+#include "kinecal/solve/fit_frames.hpp"
 #include "kinecal/trust/judge_noise.ipp"
 #include "kinecal/trust/judge_values.ipp"
 
@@ -106,6 +106,10 @@ class Refits {
   }
   /// False if these samples cannot be fitted: then there is no problem.
   [[nodiscard]] bool is_assembled() const { return calibration_.has_value(); }
+  /// True if rough_cost() is known.
+  [[nodiscard]] bool is_in_one_step() const {
+    return !calibration_ || calibration_->steps.size() == 1;
+  }
   /// The free parameters of the last step.
   [[nodiscard]] const FreeSet& free() const { return calibration_->steps.back().free; }
   /// The problem of the last step.
@@ -177,7 +181,13 @@ class Refits {
     if (!fits.minima.empty()) return fits.minima.front().cost;
     constexpr int kRough = 8;  // iterations
     const auto evaluator = step.problem->evaluator(step.free, 1);
-    const double cost = FrameFit(*evaluator, {})(values, kRough);
+    Eigen::VectorXd at = values;
+    double cost = fit_roughly(*evaluator, at, kRough);
+    if (!std::isfinite(cost) && step.excerpt) {  // of lines of sight, which see behind a camera
+      const auto sights = step.excerpt->evaluator(step.free, 1);
+      at = values;
+      cost = fit_roughly(*sights, at, kRough);
+    }
     return std::isfinite(cost) ? std::optional(cost) : std::nullopt;
   }
   /// The fitted samples with suspects undone.

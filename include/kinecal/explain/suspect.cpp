@@ -137,8 +137,25 @@ void add_couplings(const Config& config, const Robot& robot, const std::vector<U
   }
 }
 
+/// True if a sensor's points are in a frame whose orientation is fitted.
+[[nodiscard]] bool are_turned_by_fit(const Config& config, const std::string& sensor,
+                                     std::span<const Sample> samples) {
+  std::set<std::string> frames;
+  for (const Sample& sample : samples) {
+    for (const Observation& seen : sample.observations) {
+      if (seen.sensor != sensor) continue;
+      for (const Feature& feature : seen.features) frames.insert(feature.frame);
+    }
+  }
+  return std::any_of(config.steps.begin(), config.steps.end(), [&](const StepConfig& step) {
+    return std::any_of(step.free_frames.begin(), step.free_frames.end(), [&](const auto& frame) {
+      return frames.contains(frame.name) && frame.axes[3] && frame.axes[4] && frame.axes[5];
+    });
+  });
+}
+
 /// Order of features, units, axes and scale of the points of each model.
-void add_features(const Config& config, Suspects& all) {
+void add_features(const Config& config, std::span<const Sample> samples, Suspects& all) {
   const std::set<std::string> pixels = pixel_models(config);
   for (const ModelConfig& model : models_of(config)) {
     const std::string name = model.name;
@@ -179,10 +196,21 @@ void add_features(const Config& config, Suspects& all) {
       add(
           undone, [by](const Point& p) -> Point { return by * p; }, by);
     }
-    add("mirrored, as if its axes were left-handed",
-        [](const Point& p) { return Point(p.x(), -p.y(), p.z()); });
+    // Where the fit turns the points, to mirror them in one axis is to mirror them in each.
+    const bool is_any = are_turned_by_fit(config, name, samples);
+    for (const int axis : {0, 1, 2}) {
+      if (is_any && axis > 0) break;
+      add(fmt::format("mirrored{}, as if its axes were left-handed",
+                      is_any ? "" : fmt::format(" in {}", "xyz"[axis])),
+          [axis](Point p) {
+            p(axis) = -p(axis);
+            return p;
+          });
+    }
     add("turned from the axes of a link (x forward) to those of a camera (z forward)",
         [](const Point& p) { return Point(-p.y(), -p.z(), p.x()); });
+    add("turned from the axes of a camera (z forward) to those of a link (x forward)",
+        [](const Point& p) { return Point(p.z(), -p.x(), -p.y()); });
     all.push_back(
         {.undone = of, .kind = SuspectKind::property, .scale = [each](Sample& s, double factor) {
            each(s, [factor](Observation& seen) {
@@ -288,7 +316,7 @@ std::vector<Suspect> suspects_of(const Config& config, const Robot& robot,
   detail::add_names(joints, all);
   detail::add_orders(joints, all);
   detail::add_angles(joints, all);
-  detail::add_features(config, all);
+  detail::add_features(config, samples, all);
   detail::add_models(config, all);
   detail::add_pose_suspects(config, samples, all);
   detail::add_rows(config, joints, samples, all);

@@ -79,6 +79,11 @@ struct FrameFits {
                                    const Eigen::VectorXd& values, int threads,
                                    const PoseSearch& search = {});
 
+/// A few iterations with all free parameters of an evaluator.
+/// @param values  in: where to start; out: where it ended
+/// @returns       the cost; infinite if it is not defined there
+[[nodiscard]] double fit_roughly(AnyEvaluator& evaluator, Eigen::VectorXd& values, int iterations);
+
 }  // namespace detail
 
 }  // namespace kinecal

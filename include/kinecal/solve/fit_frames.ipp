@@ -134,6 +134,11 @@ inline void go_on(std::vector<FittedFrames>& fits, int iterations, Evaluators& e
   return fits;
 }
 
+KINECAL_INLINE double fit_roughly(AnyEvaluator& evaluator, Eigen::VectorXd& values,
+                                  int iterations) {
+  return FrameFit(evaluator, {})(values, iterations);
+}
+
 KINECAL_INLINE FrameFits fit_frames(const AnyProblem& excerpt, std::span<const UnknownFrame> frames,
                                     const Eigen::VectorXd& values, int threads,
                                     const PoseSearch& search) {

@@ -38,6 +38,9 @@ inline constexpr double kWoundUp = 4 * std::numbers::pi;
                                  [](double a, double b) { return std::abs(a) < std::abs(b); }));
   const bool is_large = turns(joint.joint.type) ? most > std::numbers::pi : most > 1.0;
   if (turn_into_limits(joint)) return false;  // its zero is elsewhere; degrees would hardly move it
+  constexpr double kMoves = 0.01;  // of what the limits allow: a lift that moves 1 mm is no lift
+  const double allowed = joint.limits->upper - joint.limits->lower;
+  if (joint.range() * factor < kMoves * allowed) return false;
   return is_large && are_many(outside, all) && 50 * after <= all;
 }
 
@@ -46,18 +49,17 @@ inline constexpr double kWoundUp = 4 * std::numbers::pi;
                                                             bool turning) {
   const double factor = turning ? std::numbers::pi / 180.0 : 1e-3;
   std::vector<std::size_t> found;
-  std::size_t limited = 0, all = 0;
+  std::size_t far = 0, all = 0;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     if (turns(joints[j].joint.type) != turning || joints[j].positions.empty()) continue;
     all += joints[j].range() > 0.0 ? 1 : 0;
     if (!fits_in_other_unit(joints[j], factor)) continue;
     found.push_back(j);
-    limited += joints[j].limits ? 1 : 0;
+    far += joints[j].limits && joints[j].range() > kWoundUp ? 1 : 0;
   }
-  // Without limits, a single joint may just be wound up.
-  return limited > 0 || 2 * found.size() >= std::max<std::size_t>(all, 2)
-             ? found
-             : std::vector<std::size_t>();
+  // A single joint may just be wound up, or have the positions of another one.
+  return far > 0 || 2 * found.size() >= std::max<std::size_t>(all, 2) ? found
+                                                                      : std::vector<std::size_t>();
 }
 
 /// The index of the position that is furthest from zero.
