@@ -58,6 +58,20 @@ TEST(FitFrames, FindsAFrameAnywhere) {
   }
 }
 
+TEST(FitFrames, AQuickSearchEndsAtTheSameMinimum) {
+  for (const double turn : {0.1, 1.5, 3.0, std::numbers::pi}) {
+    Vector6 pose;
+    pose << 3.0, -5.0, 1.0, turn * Vector3<double>(2, -1, 2) / 3.0;
+    const Problem problem = board_problem(pose, 6);
+    const detail::FrameFits fits =
+        detail::fit_frames(problem, std::vector{board(problem.table())},
+                           Eigen::VectorXd::Zero(problem.table().size()), 1, kQuickSearch);
+    EXPECT_EQ(fits.starts, kQuickSearch.starts);
+    ASSERT_FALSE(fits.minima.empty());
+    EXPECT_LT(fits.minima[0].cost, 1e-8) << turn;
+  }
+}
+
 TEST(FitFrames, TurnsOnlyAboutFreeAxes) {
   Vector6 pose;
   pose << 0.5, 0.2, 0.0, 0.0, 0.0, 2.8;

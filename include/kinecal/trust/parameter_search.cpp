@@ -90,7 +90,9 @@ std::vector<ParameterSearch::Part> ParameterSearch::parts(const std::vector<int>
     for (const int row : of) one.pose.push_back(pose_[static_cast<std::size_t>(row)]);
     one.jacobian = jacobian_(of, Eigen::all);
     one.residual = residual_(of);
-    one.squared = one.jacobian.transpose() * one.jacobian;
+    Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
+    lower.selfadjointView<Eigen::Lower>().rankUpdate(one.jacobian.transpose());
+    one.squared = lower.selfadjointView<Eigen::Lower>();
     one.gradient = one.jacobian.transpose() * one.residual;
   }
   return all;

@@ -59,6 +59,12 @@ TEST_F(JointPositions, OfOneJointThatIsWoundUpAreRight) {
   expect_nothing();
 }
 
+TEST_F(JointPositions, OfOneJointBeyondItsLimitsAreNotInDegrees) {
+  for (Sample& sample : samples)
+    position(sample, "lift") *= 2.7;  // as if they were another joint's
+  EXPECT_THAT(found().errors, testing::Not(testing::Contains(HasSubstr("degrees"))));
+}
+
 TEST_F(JointPositions, AWholeTurnBeyondTheLimitsAreTheSamePose) {
   for (Sample& sample : samples) position(sample, "flex") += 2 * std::numbers::pi;
   const Diagnostics diagnostics = found();
