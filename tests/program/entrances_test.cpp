@@ -50,8 +50,7 @@ struct Said {
 };
 
 /// A reason without the places of samples, which are in other files; without the name of the step, which a crate does not
-/// have; and without the numbers of a problem that samples
-/// leave open, which are those of rounding.
+/// have; and without the numbers of a problem that samples leave open, which are those of rounding.
 std::string reason_of(const std::string& sentence) {
   if (sentence.find("it ran off") != std::string::npos) return "these samples do not determine it";
   const std::string of_step = std::regex_replace(sentence, std::regex("step '[a-z]+'"), "STEP");

@@ -45,9 +45,10 @@ TEST(FitFrames, FindsAFrameAnywhere) {
     pose << 3.0, -5.0, 1.0, turn * Vector3<double>(2, -1, 2) / 3.0;
     const Problem problem = board_problem(pose, 6);
     const std::vector<UnknownFrame> frames = {board(problem.table())};
-    const auto fits =
-        detail::fit_frames(problem, frames, Eigen::VectorXd::Zero(problem.table().size()), 1)
-            .minima;
+    const detail::FrameFits all =
+        detail::fit_frames(problem, frames, Eigen::VectorXd::Zero(problem.table().size()), 1);
+    EXPECT_EQ(all.starts % 60, 0);
+    const auto& fits = all.minima;
     ASSERT_FALSE(fits.empty());
     const Vector6 found = pose_of(problem.table(), fits[0].values);
     EXPECT_TRUE(found.head<3>().isApprox(pose.head<3>(), 1e-4)) << found.transpose();

@@ -120,12 +120,8 @@ class Refits {
   }
   /// With other numbers in the fitted samples; nullopt if they cannot be fitted.
   [[nodiscard]] std::optional<Refit> with(std::span<const Sample> some) const {
-    if (!calibration_) return std::nullopt;
-    try {
-      return solved(with_samples(*calibration_, some));
-    } catch (const SampleError&) {
-      return std::nullopt;
-    }
+    const auto other = replaced(some);
+    return other ? solved(*other) : std::nullopt;
   }
   /// The free parameters of the last step that may end anywhere: poses that nobody knows.  All, if there are none.
   [[nodiscard]] FreeSet unknown() const {
@@ -238,7 +234,11 @@ class Refits {
       suspect->correct_config(config);
       is_other = true;
     }
-    if (is_other) return assembled(config, some);
+    return is_other ? assembled(config, some) : replaced(some);
+  }
+  /// The calibration with other numbers in the fitted samples; nullopt if they cannot be fitted.
+  [[nodiscard]] std::optional<Calibration> replaced(std::span<const Sample> some) const {
+    if (!calibration_) return std::nullopt;
     try {
       return with_samples(*calibration_, some);
     } catch (const SampleError&) {

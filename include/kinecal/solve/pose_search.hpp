@@ -8,7 +8,7 @@ namespace kinecal {
 
 /// How a search for unknown poses goes: see fit_frames.hpp.
 struct PoseSearch {
-  int starts = 60;           ///< orientations a round; a divisor of 300
+  int starts = 60;           ///< orientations a round; with all rounds at most 300
   int rounds = 5;            ///< at most; the search ends once five fits are at the lowest minimum
   int first = 6;             ///< iterations of every start
   std::size_t kept = 15;     ///< starts of a round that go on, the best

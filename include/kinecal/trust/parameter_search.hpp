@@ -117,6 +117,7 @@ class ParameterSearch {
   };
 
   [[nodiscard]] Whole whole_fit(const std::vector<int>& columns) const;
+  /// @param whole  determined
   /// @param cross  whole.inverse * J_whole^T J_own
   [[nodiscard]] Gain gain_of(const Whole& whole, const SearchCandidate& candidate, int number,
                              const Eigen::MatrixXd& cross) const;

@@ -59,7 +59,6 @@ ParameterSearch::Gain ParameterSearch::gain_of(const Whole& whole, const SearchC
 ParameterSearch::Gain ParameterSearch::gain_of(const Whole& whole, const SearchCandidate& candidate,
                                                int number, const Eigen::MatrixXd& cross) const {
   Gain gain{number};
-  if (!whole.determined) return gain;
   const std::vector<int>& own = candidate.columns;
   const auto q = static_cast<double>(own.size());
   Eigen::MatrixXd rest = squared_(own, own);
