@@ -9,9 +9,8 @@
 # and the dynamic loader takes the best that the processor has (glibc 2.33; older ones the first).
 # Objects for different levels must not meet in one file: their inline functions have the same names,
 # and the linker would take one of them for all.  The same holds for a static Ceres, which is compiled
-# for the baseline: its shared library is taken instead.  What crosses the border between program and
-# library is virtual functions and plain data; Eigen's matrices of variable size do not, as their
-# alignment differs.
+# for the baseline: its shared library is taken instead.  Eigen's matrices cross the border between program
+# and library, and one side frees what the other allocated; so all levels align them as the baseline does.
 # Source: ld.so(8), glibc-hwcaps; x86-64 psABI, micro-architecture levels.
 
 set(KINECAL_LEVELS "")
@@ -60,7 +59,7 @@ function(kinecal_add_part part library level)
   target_include_directories(${part} PRIVATE ${PROJECT_SOURCE_DIR}/include)
   target_include_directories(${part} SYSTEM PRIVATE
     $<TARGET_PROPERTY:Ceres::ceres,INTERFACE_INCLUDE_DIRECTORIES>)
-  target_compile_definitions(${part} PRIVATE
+  target_compile_definitions(${part} PRIVATE EIGEN_MAX_ALIGN_BYTES=16
     $<TARGET_PROPERTY:Ceres::ceres,INTERFACE_COMPILE_DEFINITIONS>)
   target_compile_features(${part} PRIVATE cxx_std_20)
   target_link_libraries(${part} PRIVATE Eigen3::Eigen Threads::Threads kinecal_warnings)
