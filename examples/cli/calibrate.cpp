@@ -103,13 +103,32 @@ void check_results(const ResultOptions& options) {
   const OutputFolder can_be_written(options.output);
 }
 
-ResultFileOptions file_options(const ResultOptions& options, const Robot& robot) {
-  ResultFileOptions files;
+namespace {
+
+OffsetStyle offset_style(const ResultOptions& options) {
   const std::map<std::string, OffsetStyle> styles = {{"", OffsetStyle::as_read},
                                                      {"origin", OffsetStyle::origin},
                                                      {"rising", OffsetStyle::rising},
                                                      {"ros2_control", OffsetStyle::ros2_control}};
-  files.offsets = styles.at(options.offsets);
+  return styles.at(options.offsets);
+}
+
+}  // namespace
+
+void judge_files_of(const ResultOptions& options, const Robot& robot,
+                    CalibrationOptions& calibrating) {
+  const std::map<std::string, std::optional<Reader>> readers = {{"", std::nullopt},
+                                                                {"driver", Reader::driver},
+                                                                {"urdf", Reader::urdf},
+                                                                {"origins", Reader::origins}};
+  calibrating.offsets = offset_style(options);
+  calibrating.in_servos = zeros_in_servos(options.robot_files, robot);
+  calibrating.reader = readers.at(options.reader);
+}
+
+ResultFileOptions file_options(const ResultOptions& options, const Robot& robot) {
+  ResultFileOptions files;
+  files.offsets = offset_style(options);
   files.in_servos = zeros_in_servos(options.robot_files, robot);
   if (options.upstream_names) {
     files.date = fmt::format("{:%Y_%m_%d_%H_%M_%S}", fmt::localtime(std::time(nullptr)));
@@ -125,18 +144,6 @@ std::vector<OutputFile> with_copies(const ResultOptions& options, const InputTex
 }
 
 namespace {
-
-/// Says what does not read the zeros that were written, if the URDF had none of this kind before.
-std::string offsets_text(const ResultOptions& options, const CalibrationSetup& setup,
-                         const std::vector<JointPatch>& patches) {
-  if (!options.offsets.empty() ||
-      !goes_into_rising(setup.urdf_text, setup.urdf, setup.robot, patches)) {
-    return "";
-  }
-  return "\nzeros of joints are in <calibration rising> of the URDF, which robot_state_publisher, "
-         "MoveIt and most drivers do not read; --offsets origin puts them into the origins, which "
-         "all read\n";
-}
 
 /// The scene must not replace an input or a report, and another file only on demand.
 void check_scene(const CalibrateOptions& options) {
@@ -187,6 +194,7 @@ CalibratedRobot fit_and_judge(const CalibrateOptions& options, PreparedCalibrati
   calibrating.solving.meter = line->meter();
   calibrating.folds = options.folds;
   calibrating.keep_outliers = options.keep_outliers;
+  judge_files_of(options, prepared.robot, calibrating);
   calibrating.progress = progress_line();
   CalibratedRobot calibrated = calibrate_robot(std::move(prepared), calibrating);
   line.reset();
@@ -273,11 +281,6 @@ int calibrate(const CalibrateOptions& options) {
   }
   const double writing = seconds_since(start) - reading - fitting;
   if (!manner.json && !manner.quiet) {
-    if (!files.empty()) {
-      show(offsets_text(options, calibrated.setup,
-                        joint_patches(robot, findings.result.table, how.in_servos)),
-           manner);
-    }
     show("\n" + times_text(calibrated.setup.samples.size(), findings.result, reading, fitting,
                            writing),
          manner);

@@ -115,6 +115,7 @@ class LogRun {
         log = prepare_log(std::move(input_.setup), recorded_log(), calibrating);
         print_or_throw(log.draw.diagnostics);
         check_robot_files(options_, log.draw.robot, input_.texts);
+        judge_files_of(options_, log.draw.robot, calibrating);
       });
       samples_ = log.samples;
       return kinecal::calibrate_log(std::move(log), calibrating);

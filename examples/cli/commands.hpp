@@ -46,6 +46,7 @@ struct RobotFileOptions {
 struct ResultOptions : InputOptions {
   std::string output;   ///< folder
   std::string offsets;  ///< rising, origin or ros2_control; empty: ros2_control where it has one
+  std::string reader;   ///< driver, urdf or origins: of the results; empty: urdf
   RobotFileOptions robot_files = {};
   bool upstream_names = false;
   bool force = false;  ///< replace results

@@ -15,6 +15,10 @@ namespace kinecal::cli {
 /// How the files are written that the user asked for.
 [[nodiscard]] ResultFileOptions file_options(const ResultOptions& options, const Robot& robot);
 
+/// Sets whose reading of these files is judged.
+void judge_files_of(const ResultOptions& options, const Robot& robot,
+                    CalibrationOptions& calibrating);
+
 /// The files of a result, and copies of its URDF and configuration.
 /// @throws OutputError  if one would replace an input, or may not be replaced
 [[nodiscard]] std::vector<OutputFile> with_copies(const ResultOptions& options,

@@ -99,6 +99,16 @@ void add_offsets(CLI::App& command, std::string& offsets) {
       ->check(CLI::IsMember({"rising", "origin", "ros2_control"}));
 }
 
+void add_reader(CLI::App& command, std::string& reader) {
+  command
+      .add_option(
+          "--reader", reader,
+          "who reads the result, so whose errors are judged: driver applies "
+          "calibration.yaml (true_position.hpp), urdf reads calibrated.urdf with its zeros, "
+          "origins reads it without <calibration rising>; default: urdf")
+      ->check(CLI::IsMember({"driver", "urdf", "origins"}));
+}
+
 /// The files of the robot's programs.
 void add_robot_files(CLI::App& command, RobotFileOptions& files) {
   command
@@ -138,6 +148,7 @@ void add_manner(CLI::App& command, Manner& manner) {
 /// Options of results, but for the folder.
 void add_results(CLI::App& command, ResultOptions& options) {
   add_offsets(command, options.offsets);
+  add_reader(command, options.reader);
   add_robot_files(command, options.robot_files);
   command.add_flag("--upstream-names", options.upstream_names,
                    "name the files as robot_calibration does, with the date");

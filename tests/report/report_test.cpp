@@ -63,7 +63,7 @@ Findings findings() {
   all.numbers = {1, 3};
   all.left_out = {{2, "samples.yaml:20", "--exclude"}};
   all.poses = {{"elbow", "wrist"}, {{0.1, -0.25}, {1.0 / 3.0, 2.0}}};
-  all.judgement.add(Grade::use_with_care, "few \"samples\"");
+  all.judgement.add(Grade::use_with_care, "few \"samples\"", {Remedy::Kind::hold});
   return all;
 }
 
@@ -182,11 +182,18 @@ TEST(NextStep, AnswersTheVerdictWithACommand) {
   EXPECT_EQ(next_step(all),
             "see where residuals are large:\n"
             "  kinecal calibrate --output out --report report.html --force");
-  all.judgement.wants_samples = true;
+  all.judgement.remedies = {{Remedy::Kind::record}};
   EXPECT_EQ(next_step(all),
             "record more poses; which:\n  kinecal plan --urdf r.urdf --config c.yaml --samples s");
   all.judgement.add_causes(Grade::use_with_care, {"an eccentric encoder"});
   EXPECT_THAT(next_step(all), HasSubstr("mend the cause"));
+  all.judgement = {};
+  all.judgement.add(Grade::use_with_care, "prior 'p' contradicts the samples",
+                    {Remedy::Kind::mend, "loosen or remove prior 'p'"});
+  all.judgement.add(Grade::use_with_care, "few samples", {Remedy::Kind::record});
+  EXPECT_EQ(next_step(all), "loosen or remove prior 'p', and calibrate again");
+  all.judgement.add(Grade::do_not_use, "fewer samples", {Remedy::Kind::record});
+  EXPECT_THAT(next_step(all), HasSubstr("record more poses"));
   all.judgement = {};
   EXPECT_THAT(next_step(all), HasSubstr("use out/calibrated.urdf"));
   EXPECT_THAT(next_step(all), HasSubstr("\n  kinecal verify out NEW_SAMPLES"));

@@ -51,6 +51,7 @@ TEST(Judge, HasCausesBeforeWhatTheyExplain) {
   EXPECT_THAT(judgement.reasons, testing::ElementsAre("degrees", "a sign", "backlash",
                                                       "huge residuals", "large residuals"));
   EXPECT_EQ(judgement.causes, 3);
+  EXPECT_EQ(judgement.remedies.size(), judgement.reasons.size());
   EXPECT_EQ(judgement.verdict, Grade::do_not_use);
 }
 
@@ -282,7 +283,7 @@ TEST(Judge, AValueThatRanOffIsOneThatSamplesDoNotDetermine) {
   judged.set("head_pan_x", 1100.0);
   const Judgement judgement = judged.judgement();
   expect(judgement, Grade::do_not_use, "do not determine 'head_pan_x' (it ran off, by 1.1e+03 m);");
-  EXPECT_TRUE(judgement.wants_samples);
+  EXPECT_EQ(judgement.remedies.front().kind, Remedy::Kind::record);
 }
 
 TEST(Judge, DoubtsIntrinsicsAndDepthThatAreFarOff) {

@@ -24,7 +24,8 @@ void judge_impossible(const CalibrationInput& input, JudgedResult& judged) {
   if (!camera.empty()) judged.judgement.add_causes(Grade::do_not_use, {camera});
   Diagnostics offsets;
   check_offsets(input, table, offsets);
-  for (const std::string& error : offsets.errors) judged.judgement.add(Grade::do_not_use, error);
+  for (const std::string& error : offsets.errors)
+    judged.judgement.add(Grade::do_not_use, error, {Remedy::Kind::mend});
 }
 
 /// True if so many samples were left out, or are bad, that something is wrong with more than single captures.

@@ -155,7 +155,8 @@ void judge_help(const WouldHelp& help, const Assessment& step, Judgement& judgem
   if (help.left >= kLensIsWrong) return;
   judgement.add(Grade::use_with_care,
                 fmt::format("the lens of '{}' is at fault: its intrinsics are not those given; {}",
-                            help.camera, fmt::join(help.sentences, ", ")));
+                            help.camera, fmt::join(help.sentences, ", ")),
+                {Remedy::Kind::mend});
 }
 
 }  // namespace kinecal

@@ -16,6 +16,7 @@
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/explain/judge_causes.hpp"
 #include "kinecal/explain/would_help.hpp"
+#include "kinecal/procedure/judge_read_back.hpp"
 #include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/tools/cameras/prepare_cameras.hpp"
 #include "kinecal/tools/identify/another_robot.hpp"
@@ -246,6 +247,7 @@ void explain(CalibratedRobot& calibrated, const CalibrationOptions& options) {
     }
   }
   if (findings.result.converged) findings.speeds = how_fast(calibrated);
+  judge_read_back(calibrated, options);
 }
 
 }  // namespace detail

@@ -12,13 +12,14 @@
 //    are assembled and the input is doubted.  Errors end here, all of them at once.
 // 2. Where nothing is free, what the samples support is searched for (search_robot()).
 // 3. Solve, estimate the noise, leave out bad samples, assess, judge (calibrate_and_judge()).
-// 4. What explains a bad fit, what would help, how fast is still good.
+// 4. What explains a bad fit, what would help, how fast is still good; what those see who read the files.
 //
 // The program, logs (calibrate_log()), capture sessions (SessionFollower) and crates (calibrate_crate.hpp) call it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@
 #include "kinecal/config/doubts/rising.hpp"
 #include "kinecal/explain/suspect.hpp"
 #include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/urdf/patch_urdf.hpp"
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/report/findings.hpp"
 #include "kinecal/samples/sample.hpp"
@@ -64,6 +66,9 @@ struct CalibrationOptions {
   bool geometry_only = false;          ///< a search frees no joint models, which a URDF cannot hold
   int draw = 3000;                     ///< of calibrate_log(): samples on which a log is judged
   std::vector<Suspect> suspects = {};  ///< what may be wrong beside what kinecal suspects
+  OffsetStyle offsets = OffsetStyle::as_read;  ///< where the URDF will hold zeros
+  std::set<std::string> in_servos = {};        ///< joints whose zeros the URDF does not get
+  std::optional<Reader> reader = {};  ///< of the files, whose errors are judged; nullopt: urdf
   Progress progress = {};  ///< called in each iteration; what it throws ends the calibration
 };
 

@@ -118,6 +118,16 @@ namespace {
   return "the verdict is 'do not use': " + judgement.reasons.front();
 }
 
+/// A reason of the verdict that more poses cure; empty if there is none.
+[[nodiscard]] std::string cured_by_poses(const Judgement& judgement) {
+  for (std::size_t i = 0; i < judgement.reasons.size(); ++i) {
+    if (judgement.remedies[i].kind != Remedy::Kind::record) continue;
+    return fmt::format("the verdict is '{}': {}", to_string(judgement.verdict),
+                       judgement.reasons[i]);
+  }
+  return {};
+}
+
 /// Why samples are too few; empty if they are not.
 [[nodiscard]] std::string too_few(const SessionResult& result) {
   constexpr double kToSpare = 0.5;  // of the parameters: what shows the errors of joints
@@ -194,7 +204,8 @@ std::string why_go_on(const Accuracy& wanted, const SessionFollower& session,
                                 ahead);
     if (!why.empty()) return why;
     detail::explain(all, {});
-    return detail::not_usable(all.judgement);
+    why = detail::not_usable(all.judgement);
+    return why.empty() ? detail::cured_by_poses(all.judgement) : why;
   });
 }
 

@@ -5,7 +5,7 @@
 //
 //   - the samples measure half as many numbers again as there are free parameters
 //     (measured_numbers.hpp),
-//   - the calibration of all samples is usable,
+//   - the calibration of all samples is usable, and more poses would cure none of the reasons of its verdict,
 //   - no parameter is hardly determined that the remaining poses would determine,
 //   - the pose is determined and as accurate as requested at the captured poses, at each sample's
 //     pose from the other samples, and at the remaining poses (pose_elsewhere.hpp).  If held-out

@@ -150,6 +150,12 @@ std::string note_on(const Parameter& parameter, double deviation) {
   return held;
 }
 
+/// " · by the URDF alone measured 0.283 mm", if that is more.
+[[nodiscard]] inline std::string read_by(const ReadBack& read_back) {
+  if (!read_back.is_worse) return "";
+  return " · by the URDF alone " + errors_text(read_back.of(read_back.judged)->errors);
+}
+
 }  // namespace detail
 
 Findings findings_of(const Robot& robot, const Calibration& calibration, JudgedResult judged,
@@ -173,6 +179,8 @@ std::string findings_text(const Findings& findings, Figures figures) {
         findings.drawn);
   }
   text += "\n\n" + detail::fit_table(findings) + "\n" + detail::parameters_text(findings, figures);
+  const std::string read_back = read_back_text(findings.read_back);
+  if (!read_back.empty()) text += "\n" + read_back;
   const std::string cameras = detail::cameras_text(findings);
   if (!cameras.empty()) text += "\n" + cameras;
   for (const Assessment& step : findings.assessments) {
@@ -199,7 +207,7 @@ std::string findings_line(const Findings& findings) {
       fits += " (held out " + reading(error->held_out, block.unit) + ")";
     }
   }
-  text += fits;
+  text += fits + detail::read_by(findings.read_back);
   const std::size_t out = findings.left_out.size();
   if (out == 0) return text;
   return text + fmt::format(" · {} of {} samples left out", out,

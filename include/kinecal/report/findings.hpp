@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kinecal/report/next_step.hpp"
+#include "kinecal/report/read_back.hpp"
 #include "kinecal/report/recorded_poses.hpp"
 #include "kinecal/report/reported_search.hpp"
 #include "kinecal/report/text.hpp"
@@ -28,6 +29,7 @@ struct Findings : JudgedResult {
   std::vector<std::string> speeds = {};  ///< how fast is still good, where samples moved: sentences
   std::vector<int> held = {};  ///< parameters of joints and sensors held at a value other than zero
   ReportedSearch search = {};  ///< that chose the free parameters; without steps: there was none
+  ReadBack read_back = {};     ///< what those see who read the files
   RecordedPoses poses = {};    ///< of the samples that were used
   ProgramCall call = {};       ///< how the program was called
   bool has_own_poses = false;  ///< a target has a pose of its own in each sample

@@ -76,11 +76,19 @@ namespace kinecal::detail {
                          in_reading_unit(block.rms_after, block.unit), reading_unit(block.unit));
   }
   std::string html = "<div><h3>Fit, before and after</h3><ul>" + items + "</ul>";
+  const ReadBack& read_back = data.read_back;
+  if (read_back.is_worse) {
+    html += fmt::format("<p>by the URDF alone: <strong>{}</strong></p>",
+                        html_sentence(errors_text(read_back.of(read_back.judged)->errors)));
+  }
   if (data.pose) {
     constexpr double kKnown = 0.35;  // radians; the orientation of a point is meaningless
     html += fmt::format(
-        "<p><code>{}</code> in <code>{}</code> is known to <strong>{}</strong>{}</p>",
-        html_name(data.pose->frame), html_name(data.pose->in), reading(data.pose->position, "m"),
+        "<p>{}<code>{}</code> in <code>{}</code> is known to {}{}</p>",
+        read_back.is_worse ? "With <code>calibration.yaml</code>, " : "",
+        html_name(data.pose->frame), html_name(data.pose->in),
+        read_back.is_worse ? reading(data.pose->position, "m")
+                           : "<strong>" + reading(data.pose->position, "m") + "</strong>",
         data.pose->rotation < kKnown ? ", " + reading(data.pose->rotation, "rad") : "");
   }
   return html + "</div>\n";

@@ -85,6 +85,20 @@ namespace detail {
           {"effect", common.effect}};
 }
 
+[[nodiscard]] inline Json json(const ReadBack& read_back) {
+  const auto error = [](const BlockError& of) {
+    return Json{{"name", of.block}, {"unit", of.unit}, {"rms", of.rms}};
+  };
+  const auto fit = [&](const ReaderFit& of) {
+    return Json{{"reader", to_string(of.reader)},
+                {"judged", of.reader == read_back.judged},
+                {"error_blocks", json_list(of.errors, error)}};
+  };
+  return {{"readers", json_list(read_back.fits, fit)},
+          {"lost", read_back.lost},
+          {"geometry_only", json_list(read_back.geometry_only, error)}};
+}
+
 [[nodiscard]] inline Json json(const LeftOutSample& sample) {
   return {{"sample", sample.number}, {"source", sample.source}, {"why", sample.why}};
 }
@@ -177,6 +191,7 @@ std::string json_report(const Findings& findings) {
       {"unused", findings.unused},
       {"would_help", findings.helps},
       {"how_fast", findings.speeds},
+      {"read_back", detail::json(findings.read_back)},
       {"search", json_list(findings.search.steps, searched)},
       {"next", next_step(findings)},
       {"converged", result.converged},

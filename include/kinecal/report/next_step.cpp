@@ -91,6 +91,29 @@ namespace {
               : again(findings, ShellCommand().add_names("--hold", names)));
 }
 
+/// What serves the reader of a URDF that cannot hold the result: tried, if it is to hold what is lost.
+[[nodiscard]] std::string serve_reader(const Findings& findings) {
+  const ReadBack& read_back = findings.read_back;
+  const bool has_call = !findings.call.command.empty();
+  if (read_back.lost.empty()) {
+    return "write zeros into origins, which all programs read" +
+           (has_call ? ":\n  " + again(findings, {"--offsets", "origin"}) : "");
+  }
+  constexpr double kBetter = 1.1;
+  const std::vector<BlockError>& now = read_back.of(read_back.judged)->errors;
+  if (times_larger(now, read_back.geometry_only) > kBetter) {
+    const ShellCommand& inputs = findings.call.inputs;
+    return "find what a URDF holds: it alone then leaves " + errors_text(read_back.geometry_only) +
+           (inputs.empty() ? ""
+                           : ":\n  " + ShellCommand{"kinecal", "identify"}
+                                           .add(inputs)
+                                           .add({"--geometry-only", "-o", "geometry.yaml"})
+                                           .str());
+  }
+  return "apply calibration.yaml in the driver (true_position.hpp), and judge the result for it" +
+         (has_call ? ":\n  " + again(findings, {"--reader", "driver"}) : "");
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -101,10 +124,6 @@ std::string next_step(const Findings& findings) {
   if (judgement.verdict != Grade::good && findings.helps_leave < kMuch) {
     return "find out what else is wrong" + detail::with_inputs("identify", call.inputs);
   }
-  if (judgement.causes > 0) {
-    return std::string(judgement.causes == 1 ? "mend the cause" : "mend the causes") +
-           " named under the verdict, and calibrate again";
-  }
   if (judgement.verdict == Grade::good) {
     if (findings.has_own_poses) {  // nothing says where the target is in new samples
       return "use the files in " + (call.output.empty() ? "the output" : call.output) +
@@ -114,11 +133,19 @@ std::string next_step(const Findings& findings) {
     return "use " + call.output + "/calibrated.urdf, and verify it with a few new poses:\n  " +
            ShellCommand{"kinecal", "verify", shell_file(call.output), "NEW_SAMPLES"}.str();
   }
-  const std::string held = detail::hold(findings);
+  const Remedy remedy = judgement.remedies.empty() ? Remedy{} : judgement.remedies.front();
+  using Kind = Remedy::Kind;
+  if (remedy.kind == Kind::mend) {
+    if (!remedy.how.empty()) return remedy.how + ", and calibrate again";
+    return std::string(judgement.causes > 1 ? "mend the causes" : "mend the cause") +
+           " named under the verdict, and calibrate again";
+  }
+  if (remedy.kind == Kind::serve) return detail::serve_reader(findings);
+  const std::string held = remedy.kind == Kind::hold ? detail::hold(findings) : "";
   if (!held.empty()) return held;
   const bool is_open =
       !findings.assessments.empty() && !findings.assessments.back().weak.hold.empty();
-  if (judgement.wants_samples || is_open) {
+  if (remedy.kind == Kind::record || (remedy.kind == Kind::hold && is_open)) {
     return std::string("record more poses") + (call.inputs.empty() ? "" : "; which") +
            detail::with_inputs("plan", call.inputs);
   }

@@ -111,6 +111,7 @@ ReportData report_data(const Calibration& calibration, const Findings& findings,
   data.reasons = findings.judgement.reasons;
   data.helps = findings.helps;
   data.search = findings.search;
+  data.read_back = findings.read_back;
   data.next = next_step(findings);
   data.steps = findings.result.steps;
   data.solved = findings.used_count();

@@ -87,6 +87,7 @@ struct ReportData {
   Grade verdict = Grade::good;
   std::vector<std::string> reasons;  ///< for the verdict: causes, then worst first
   std::vector<std::string> helps;    ///< held parameters that would lower the error
+  ReadBack read_back;                ///< what those see who read the files
   std::string next;                  ///< what to do: see next_step()
   std::string version;               ///< "kinecal 0.2.0"
   ShellCommand command;              ///< repeats the run

@@ -92,6 +92,25 @@ namespace {
   return deviations.empty() ? 0.0 : median_of(std::move(deviations));
 }
 
+/// Sets the uncertainty, and the priors that the samples contradict.
+/// @param inverse  (coordinates x coordinates) of the information
+void set_uncertainty(const AnyProblem& problem, const FreeSet& free, ParameterValues values,
+                     const LinearFit& fit, const Eigen::MatrixXd& inverse, const PoseGroups& poses,
+                     Assessment& found) {
+  const Eigen::MatrixXd& basis = fit.coordinates.basis;
+  const Eigen::MatrixXd of_free = basis * inverse * basis.transpose();
+  const bool robust = (fit.loss.array() != 1.0).any();
+  const double variance = robust ? 1.0 : prior_variance(found.noise);
+  const auto with_priors = [&](const Eigen::MatrixXd& of_priors) {
+    found.uncertainty = uncertainty(problem, fit, found.noise, poses, of_priors);
+    mark_undetermined(problem, free, fit.coordinates, found.uncertainty);
+  };
+  with_priors(variance * fit.prior_hessian);
+  if (problem.priors().empty()) return;
+  found.pulls = prior_pulls(problem, free, values, of_free, variance, found.uncertainty);
+  with_priors(basis.transpose() * prior_scatter(problem, free, values, of_free, variance) * basis);
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -125,9 +144,7 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   set_repeats(fit, single, found.noise);
   const Eigen::MatrixXd effects = detail::joint_effects(problem, values, samples, inside, fit);
   found.common = common_noise(fit, effects, single, found.noise);
-  found.uncertainty = uncertainty(problem, fit, found.noise, poses);
-  detail::mark_undetermined(problem, inside, fit.coordinates, found.uncertainty);
-  found.pulls = prior_pulls(problem, inside, values, fit, inverse, found.uncertainty);
+  detail::set_uncertainty(problem, inside, values, fit, inverse, poses, found);
   found.weak = weak_parameters(problem, inside, found.uncertainty);
   found.captures = capture_errors(problem, fit, single);
   found.noise_without_bad = noise_without_bad(fit, found.captures);

@@ -139,13 +139,16 @@ struct EachShard {
 
 /// C, from the sums.  A sample's gradient does not feel that its own poses are fitted, as J' is across them; only the
 /// other parameters make gradients smaller.
-[[nodiscard]] inline Uncertainty shard_uncertainty(const AnyProblem& problem, const ShardSums& sums,
+/// @param of_priors  variance of their weighted residuals
+[[nodiscard]] inline Uncertainty shard_uncertainty(const AnyProblem& problem, const FreeSet& free,
+                                                   ParameterValues values, const ShardSums& sums,
                                                    const Coordinates& by, double of_priors) {
   const double rows = rows_of(problem, sums) - used_of(sums);
   const double freedom = rows / std::max(1.0, rows - static_cast<double>(by.basis.cols()));
   const Eigen::MatrixXd inverse = inverse_in(by, sums.hessian);
   const Eigen::MatrixXd covariance =
-      inverse * (freedom * sums.scores + of_priors * sums.priors) * inverse;
+      inverse * (freedom * sums.scores + prior_scatter(problem, free, values, inverse, of_priors)) *
+      inverse;
   return {static_cast<int>(by.basis.cols()), covariance, deviations(covariance, by.lost), 1.0};
 }
 
@@ -170,7 +173,8 @@ ShardAssessment assess_shards(const Shards& shards, const FreeSet& free, Paramet
   Eigen::MatrixXd information = sums.priors;
   for (const detail::BlockSums& block : sums.blocks) information += block.information;
   of.noise = detail::noise_of(problem, sums, detail::inverse_in(by, information));
-  of.uncertainty = detail::shard_uncertainty(problem, sums, by, prior_variance(of.noise));
+  of.uncertainty =
+      detail::shard_uncertainty(problem, inside, after, sums, by, prior_variance(of.noise));
   detail::mark_undetermined(problem, inside, by, of.uncertainty);
   of.weak = weak_parameters(problem, inside, of.uncertainty);
   found.blocks = detail::statistics_of_blocks(problem, sums);

@@ -24,30 +24,32 @@ void judge_determined(const Assessment& step, bool last, Judgement& judgement) {
   judgement.add(last ? Grade::do_not_use : Grade::use_with_care,
                 "step '" + step.step + "': these samples determine none of its " +
                     std::to_string(step.parameters.size()) +
-                    " free parameters; does any error block depend on them, with what weight?");
+                    " free parameters; does any error block depend on them, with what weight?",
+                {Remedy::Kind::mend});
 }
 
 void judge_freedom(const Assessment& step, Judgement& judgement) {
   const double parameters = std::max(1, step.uncertainty.determined);
   const double freedom = (static_cast<double>(step.rows) - step.used) / step.readings - parameters;
   if (freedom >= parameters) return;
-  judgement.wants_samples = true;
   judgement.add(freedom < 0.5 * parameters ? Grade::do_not_use : Grade::use_with_care,
                 "step '" + step.step + "': " + std::to_string(step.rows) +
                     " residuals are too few to check " +
                     std::to_string(static_cast<int>(parameters)) +
-                    " parameters; record more samples");
+                    " parameters; record more samples",
+                {Remedy::Kind::record});
 }
 
 /// Samples of other regions may fit worse: the model lacks something that matters there.
 void judge_region(const HeldOutError& error, double expected, Judgement& judgement) {
   constexpr double kTimes = 3.0;
   if (!(error.region > kTimes * std::max(expected, error.held_out))) return;
-  judgement.add(Grade::use_with_care, "error block '" + error.block +
-                                          "': " + reading(error.region, error.unit) +
-                                          " on samples of a region that was held out, " +
-                                          reading(error.fitted, error.unit) +
-                                          " on fitted ones; use it near these samples only");
+  judgement.add(Grade::use_with_care,
+                "error block '" + error.block + "': " + reading(error.region, error.unit) +
+                    " on samples of a region that was held out, " +
+                    reading(error.fitted, error.unit) +
+                    " on fitted ones; use it near these samples only",
+                {Remedy::Kind::record});
 }
 
 void judge_held_out(const Assessment& step, Judgement& judgement) {
@@ -61,11 +63,11 @@ void judge_held_out(const Assessment& step, Judgement& judgement) {
     const double times = error.held_out / expected;
     judge_region(error, expected, judgement);
     if (!kTimes.exceeded(times)) continue;
-    judgement.wants_samples = true;
     judgement.add(kTimes.grade(times),
                   "error block '" + error.block + "': " + reading(error.held_out, error.unit) +
                       " on samples held out, " + reading(error.fitted, error.unit) +
-                      " on fitted ones; record more samples or free fewer parameters");
+                      " on fitted ones; record more samples or free fewer parameters",
+                  {Remedy::Kind::record});
   }
 }
 
@@ -98,7 +100,8 @@ void judge_weak(const Assessment& step, const ParameterTable& table, Judgement& 
                 "these samples hardly determine '" + first.name + "' (+- " +
                     reading(step.deviation(step.weak.hold.front()).value_or(0.0), first.unit) +
                     ")" + (others > 0 ? " and " + std::to_string(others) + " more" : "") +
-                    "; record poses that differ more, or hold:" + hold);
+                    "; record poses that differ more, or hold:" + hold,
+                {Remedy::Kind::hold});
 }
 
 void judge_priors(const Assessment& step, const ParameterTable& table, Judgement& judgement) {
@@ -107,7 +110,8 @@ void judge_priors(const Assessment& step, const ParameterTable& table, Judgement
     judgement.add(Grade::use_with_care,
                   "prior '" + pull.prior + "' contradicts the samples: it shifts '" + p.name +
                       "' by " + reading(pull.shift, p.unit) + ", " + reading(pull.times, "1") +
-                      " times its +-; loosen or remove it");
+                      " times its +-; loosen or remove it",
+                  {Remedy::Kind::mend, "loosen or remove prior '" + pull.prior + "'"});
   }
 }
 
@@ -119,20 +123,22 @@ void judge_pose(const Assessment& step, Judgement& judgement) {
     judgement.add(Grade::use_with_care,
                   pose +
                       " depends on a combination of parameters that these samples do not "
-                      "determine; see 'cannot be determined'");
+                      "determine; see 'cannot be determined'",
+                  {Remedy::Kind::hold});
   }
   if (step.elsewhere > kPosition.care && !kPosition.exceeded(step.pose->position)) {
     judgement.add(Grade::use_with_care,
                   pose + " is known to " + reading(step.pose->position, "m") +
                       " at these samples, but to " + reading(step.elsewhere, "m") +
                       " over the limits of the joints; use it near these samples only, or record "
-                      "poses that differ more");
+                      "poses that differ more",
+                  {Remedy::Kind::record});
   }
   if (!kPosition.exceeded(step.pose->position)) return;
-  judgement.wants_samples = true;
   judgement.add(
       kPosition.grade(step.pose->position),
-      pose + " is known to " + reading(step.pose->position, "m") + " only; record more samples");
+      pose + " is known to " + reading(step.pose->position, "m") + " only; record more samples",
+      {Remedy::Kind::record});
 }
 
 }  // namespace
@@ -152,7 +158,9 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
                 const std::vector<Assessment>& assessments, const std::vector<std::string>& doubts,
                 const std::vector<std::string>& refutable) {
   Judgement judgement;
-  if (!result.converged) judgement.add(Grade::do_not_use, result.termination);
+  if (!result.converged) {
+    judgement.add(Grade::do_not_use, result.termination, {Remedy::Kind::hold});
+  }
   for (std::size_t s = 0; s < assessments.size(); ++s) {
     const CalibrationStep& step = calibration.steps[s];
     const bool last = s + 1 == assessments.size();
@@ -165,11 +173,11 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
     if (last) detail::judge_views(assessments[s], result.table, judgement);
     if (last) detail::judge_projection(assessments[s], judgement);
     if (last && assessments[s].one_pose) {
-      judgement.wants_samples = true;
       judgement.add(Grade::use_with_care,
                     "all samples are of one pose of the robot, and nothing shows how the result "
                     "does in others; record "
-                    "other poses");
+                    "other poses",
+                    {Remedy::Kind::record});
     }
     if (last) detail::judge_captures(assessments[s], *step.problem, judgement);
     if (last && !detail::judge_lens(assessments[s], judgement)) {
@@ -186,7 +194,7 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
   for (const std::string& doubt : doubts) {
     if (refutes && std::find(refutable.begin(), refutable.end(), doubt) != refutable.end())
       continue;
-    judgement.add(Grade::use_with_care, doubt);
+    judgement.add(Grade::use_with_care, doubt, {Remedy::Kind::mend});
   }
   return judgement;
 }

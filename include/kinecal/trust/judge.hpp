@@ -54,22 +54,38 @@ enum class Grade { good, use_with_care, do_not_use };
   return grade == Grade::use_with_care ? "use with care" : "do not use";
 }
 
+/// What answers a reason.
+struct Remedy {
+  enum class Kind {
+    look,    ///< at residuals
+    record,  ///< more poses
+    hold,    ///< what samples do not determine or support
+    mend,    ///< what the reason names
+    serve,   ///< those who read the files: see read_back.hpp
+  };
+  Kind kind = Kind::look;
+  std::string how = {};  ///< to mend: "loosen or remove prior 'p'"; empty: the reason says it
+};
+
 /// A verdict and its reasons.
 struct Judgement {
   Grade verdict = Grade::good;
   std::vector<std::string> reasons;  ///< causes, then the worst first; sentences with figures
-  bool wants_samples = false;        ///< more samples would help
+  std::vector<Remedy> remedies;      ///< what answers each of them
   int causes = 0;                    ///< how many of the reasons are causes of the others
 
   /// Adds a reason.
-  void add(Grade grade, const std::string& reason) {
-    reasons.insert(grade > verdict ? reasons.begin() + causes : reasons.end(), reason);
+  void add(Grade grade, const std::string& reason, const Remedy& with = {}) {
+    const auto at = grade > verdict ? reasons.begin() + causes : reasons.end();
+    remedies.insert(remedies.begin() + (at - reasons.begin()), with);
+    reasons.insert(at, reason);
     if (grade > verdict) verdict = grade;
   }
   /// Adds what explains the reasons, in front of what is known already.
   void add_causes(Grade grade, const std::vector<std::string>& found) {
     reasons.insert(reasons.begin(), found.begin(), found.end());
     causes += static_cast<int>(found.size());
+    remedies.insert(remedies.begin(), found.size(), Remedy{Remedy::Kind::mend});
     if (!found.empty() && grade > verdict) verdict = grade;
   }
 };

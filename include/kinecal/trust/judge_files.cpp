@@ -23,7 +23,8 @@ void judge_misfits(const std::vector<double>& misfits, const std::vector<std::st
     char times[48];
     (void)std::snprintf(times, sizeof times, "%.1f", misfits[shard] / median);
     judgement.add(Grade::use_with_care,
-                  names[shard] + ": its residuals are " + times + " times those of most files");
+                  names[shard] + ": its residuals are " + times + " times those of most files",
+                  {Remedy::Kind::mend, "look at " + names[shard] + ", or leave it out"});
   }
 }
 
@@ -61,12 +62,15 @@ void judge_files(const ShardAssessment& found, const std::vector<std::string>& n
         name(far.shard) + ": a feature of error block '" + far.block + "' is " +
             reading(far.distance, far.unit) + " off, " + times +
             ", and decides a part of the result: kinecal calibrate of this file names its "
-            "sample");
+            "sample",
+        {Remedy::Kind::mend});
   }
   for (const auto& [copy, first] : found.copies) {
-    judgement.add(Grade::use_with_care, name(copy) + ": has the samples of " + name(first) +
-                                            "; copies count twice and say nothing new; leave one "
-                                            "out");
+    judgement.add(Grade::use_with_care,
+                  name(copy) + ": has the samples of " + name(first) +
+                      "; copies count twice and say nothing new; leave one "
+                      "out",
+                  {Remedy::Kind::mend, "leave out " + name(copy)});
   }
 }
 

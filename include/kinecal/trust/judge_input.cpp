@@ -54,7 +54,7 @@ class UnusedSamples {
                                name.second + "'?";
       all.push_back(text);
       if (some.are_more_than_one_of(kSoMany, samples_)) {
-        judgement.add(Grade::use_with_care, text);
+        judgement.add(Grade::use_with_care, text, {Remedy::Kind::mend});
       }
     }
   }
@@ -71,7 +71,7 @@ class UnusedSamples {
                              " left out: features are not numbers";
     all.push_back(text);
     if (without_numbers_.are_more_than_one_of(kSoMany, samples_)) {
-      judgement.add(Grade::use_with_care, text);
+      judgement.add(Grade::use_with_care, text, {Remedy::Kind::mend});
     }
   }
   /// @param is_known  a doubt about the input says so already
@@ -86,7 +86,8 @@ class UnusedSamples {
                                                " of others; " + std::string(kCopiesCountTwice);
     all.push_back(text);
     if (is_known || !copies_.are_more_than_one_of(kSoMany, samples_)) return;
-    judgement.add(all_of_them ? Grade::do_not_use : Grade::use_with_care, text);
+    judgement.add(all_of_them ? Grade::do_not_use : Grade::use_with_care, text,
+                  {all_of_them ? Remedy::Kind::record : Remedy::Kind::mend});
   }
   /// Samples that no error block compares for another reason: not all of its sensors observe something.
   void add_others(std::vector<std::string>& all) const {

@@ -52,7 +52,8 @@ inline void judge_folds(const Assessment& step, Judgement& judgement) {
                       (fold.is_among_features()
                            ? "; give it another model ('lens: auto' finds it)"
                            : "; do not use it beyond these, record features up to the corners, or "
-                             "hold its last coefficients"));
+                             "hold its last coefficients"),
+                  {Remedy::Kind::mend});
   }
 }
 
@@ -70,21 +71,21 @@ inline void judge_views(const Assessment& step, const ParameterTable& table, Jud
     // Of the length that was found, not of the one that it began with.
     const double deviation = step.deviation(p).value_or(0.0) / std::abs(1.0 + table[p].value);
     if (step.views < kEnough) {
-      judgement.wants_samples = true;
       const std::string different = step.views < step.samples ? " different" : "";
       judgement.add(step.views < kFewest ? Grade::do_not_use : Grade::use_with_care,
                     std::to_string(step.views) + different +
                         (step.views == 1 ? " view is" : " views are") +
                         " too few for the lens of '" + camera +
-                        "', and their +- mean little; take 20, tilted by 30 degrees to all sides");
+                        "', and their +- mean little; take 20, tilted by 30 degrees to all sides",
+                    {Remedy::Kind::record});
     }
     if (deviation > kKnown) {  // infinite, if not at all
-      judgement.wants_samples = true;
       judgement.add(
           Grade::do_not_use,
           "these views do not tell the focal length of '" + camera + "'" +
               (std::isfinite(deviation) ? " (+- " + reading(1e2 * deviation, "1") + " %)" : "") +
-              ": tilt the target by 30 degrees to all sides");
+              ": tilt the target by 30 degrees to all sides",
+          {Remedy::Kind::record});
     }
   }
 }
@@ -104,14 +105,16 @@ inline void judge_projection(const Assessment& step, Judgement& judgement) {
       judgement.add(Grade::use_with_care,
                     "residuals of '" + map.sensor + "' depend on the place in its image (" +
                         reading(alike.alike, "px") + " of " + reading(alike.all, "px") +
-                        ", most at the " + alike.region + ")" + cause);
+                        ", most at the " + alike.region + ")" + cause,
+                    {Remedy::Kind::mend});
     } else if (map.halves && map.halves->chance < kSmallChance &&
                map.halves->difference > kPixels &&
                map.halves->difference > kTimes * map.halves->allowed) {
-      judgement.add(Grade::use_with_care, "two halves of the samples put pixels of '" + map.sensor +
-                                              "' " + reading(map.halves->difference, "px") +
-                                              " apart, the +- allow " +
-                                              reading(map.halves->allowed, "px") + cause);
+      judgement.add(Grade::use_with_care,
+                    "two halves of the samples put pixels of '" + map.sensor + "' " +
+                        reading(map.halves->difference, "px") + " apart, the +- allow " +
+                        reading(map.halves->allowed, "px") + cause,
+                    {Remedy::Kind::mend});
     }
   }
 }

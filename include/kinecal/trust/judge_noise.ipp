@@ -39,11 +39,11 @@ inline void judge_directions(const Assessment& step, Judgement& judgement) {
   constexpr double kTimes = 5.0;
   for (const BlockNoise& noise : step.noise) {
     if (!(noise.across > 0.0) || !(noise.along > kTimes * noise.across)) continue;
-    judgement.add(Grade::use_with_care, "error block '" + noise.block + "': residuals scatter by " +
-                                            reading(noise.along, noise.unit) +
-                                            " in one direction and by " +
-                                            reading(noise.across, noise.unit) +
-                                            " across it; is an axis of a sensor bad?");
+    judgement.add(Grade::use_with_care,
+                  "error block '" + noise.block + "': residuals scatter by " +
+                      reading(noise.along, noise.unit) + " in one direction and by " +
+                      reading(noise.across, noise.unit) + " across it; is an axis of a sensor bad?",
+                  {Remedy::Kind::mend});
   }
 }
 
@@ -62,13 +62,19 @@ inline void judge_noise(const Assessment& step, Judgement& judgement) {
       if (!(times > kTimes) && !in_other_unit) continue;
       const std::string unit = noise.unit == "px" ? "pixels" : "metres";
       const Grade grade = grade_of_sigma(times, distance, limits);
-      judgement.add(in_other_unit ? Grade::do_not_use : grade,
-                    "error block '" + noise.block + "': sigma " + reading(noise.given, noise.unit) +
-                        " given, " + shown +
-                        (in_other_unit ? "; sigma must be in " + unit
-                         : grade == Grade::use_with_care
-                             ? "; sigma is that of a residual, errors of the robot included"
-                             : "; the model does not fit these samples"));
+      judgement.add(
+          in_other_unit ? Grade::do_not_use : grade,
+          "error block '" + noise.block + "': sigma " + reading(noise.given, noise.unit) +
+              " given, " + shown +
+              (in_other_unit ? "; sigma must be in " + unit
+               : grade == Grade::use_with_care
+                   ? "; sigma is that of a residual, errors of the robot included"
+                   : "; the model does not fit these samples"),
+          in_other_unit || grade == Grade::use_with_care
+              ? Remedy{Remedy::Kind::mend,
+                       "give the sigma of '" + noise.block + "'" +
+                           (in_other_unit ? " in " + unit : " as " + reading(sigma, noise.unit))}
+              : Remedy{});
     } else if (noise.unit == "m" || noise.unit == "px") {
       if (!limits.exceeded(distance)) continue;
       judgement.add(limits.grade(distance),

@@ -63,10 +63,11 @@ inline void judge_places(const Assessment& step, const ParameterTable& table,
     frames += (frames.empty() ? "'" : ", '") + frame + "'";
   }
   if (frames.empty()) return;
-  judgement.wants_samples = true;
-  judgement.add(Grade::do_not_use, "these samples leave open in all directions where " + frames +
-                                       " is: such numbers are arbitrary; record poses that turn "
-                                       "about two axes");
+  judgement.add(Grade::do_not_use,
+                "these samples leave open in all directions where " + frames +
+                    " is: such numbers are arbitrary; record poses that turn "
+                    "about two axes",
+                {Remedy::Kind::record});
 }
 
 /// The same beside a measured flange, where such a frame is what is sought.  Frames between joints may be anywhere because

@@ -57,23 +57,25 @@ inline void judge_changes(const CalibrationStep& step, const CalibrationResult& 
   if (worst == nullptr) return;
   const double by = change_of(*worst);
   if (ran_off(*worst, by, size)) {
-    judgement.wants_samples = true;
     judgement.add(Grade::do_not_use,
                   "these samples do not determine '" + worst->name + "' (it ran off, by " +
                       reading(by, worst->unit) + ")" +
                       (others > 0 ? " and " + std::to_string(others) + " more" : "") +
-                      "; record more poses that differ, or free fewer parameters");
+                      "; record more poses that differ, or free fewer parameters",
+                  {Remedy::Kind::record});
     return;
   }
   judgement.add(
-      grade, "'" + worst->name + "' changed by " +
-                 (worst->unit == "1" ? reading(1e2 * by, "1") + " %" : reading(by, worst->unit)) +
-                 (others > 0 ? ", and " + std::to_string(others) +
-                                   " more by more than is plausible; are the URDF or initial "
-                                   "values wrong, or do these samples not determine them?"
-                             : "; is the URDF or its initial value wrong, or do these samples not "
-                               "determine it?") +
-                 turned_text(*worst));
+      grade,
+      "'" + worst->name + "' changed by " +
+          (worst->unit == "1" ? reading(1e2 * by, "1") + " %" : reading(by, worst->unit)) +
+          (others > 0 ? ", and " + std::to_string(others) +
+                            " more by more than is plausible; are the URDF or initial "
+                            "values wrong, or do these samples not determine them?"
+                      : "; is the URDF or its initial value wrong, or do these samples not "
+                        "determine it?") +
+          turned_text(*worst),
+      {Remedy::Kind::hold});
 }
 
 /// Sag and play that are surely negative: no joint yields against its load.

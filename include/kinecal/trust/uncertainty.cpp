@@ -38,11 +38,10 @@ struct RobustSums {
   }
   const double rows = static_cast<double>(fit.residual.size());
   sums.gradients *= rows / std::max(1.0, rows - static_cast<double>(n));
-  sums.gradients += fit.prior_hessian;
   return sums;
 }
 
-/// V of the cost without losses.
+/// V of the cost without losses and priors.
 [[nodiscard]] inline Eigen::MatrixXd noise_information(const LinearFit& fit,
                                                        const std::vector<BlockNoise>& noise) {
   Eigen::VectorXd variances(fit.residual.size());
@@ -50,7 +49,7 @@ struct RobustSums {
     const double s = noise[static_cast<std::size_t>(block.term)].weighted();
     variances.segment(block.first, block.size).setConstant(s * s);
   }
-  return information(fit, variances, prior_variance(noise));
+  return information(fit, variances, 0.0);
 }
 
 PlainMatrix deviations(const PlainMatrix& covariance, const PlainMatrix& lost) {
@@ -85,7 +84,8 @@ void mark_undetermined(const AnyProblem& problem, const FreeSet& free, const Coo
 }  // namespace detail
 
 Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
-                        const std::vector<BlockNoise>& noise, const PoseGroups& poses) {
+                        const std::vector<BlockNoise>& noise, const PoseGroups& poses,
+                        const Eigen::MatrixXd& of_priors) {
   const bool robust = (fit.loss.array() != 1.0).any();
   Eigen::MatrixXd hessian, middle;
   if (robust) {
@@ -96,11 +96,10 @@ Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
     hessian = information(fit, fit.loss);
     middle = detail::noise_information(fit, noise);
   }
+  middle += of_priors;
   const Eigen::MatrixXd inverse = detail::Spectrum(hessian).pseudo_inverse();
   const Coordinates& by = fit.coordinates;
-  const double prior_variance = robust ? 1.0 : kinecal::prior_variance(noise);
-  const GradientVariance grouped =
-      gradient_variance(problem, fit, poses, middle, prior_variance * fit.prior_hessian);
+  const GradientVariance grouped = gradient_variance(problem, fit, poses, middle, of_priors);
   const Eigen::MatrixXd coordinates = inverse * grouped.variance * inverse;
   const Eigen::MatrixXd covariance = by.basis * coordinates * by.basis.transpose();
   return {static_cast<int>(coordinates.rows()), covariance, detail::deviations(covariance, by.lost),

@@ -4,6 +4,7 @@
 //
 // with P the priors, s_b the weighted noise of error block b, and s = 1 if all blocks have a sigma,
 // else that of all blocks: without sigmas, weights are only ratios.  One common s gives s^2 H^-1.
+// The variance of a prior that the samples contradict is larger (prior_pulls.hpp).
 // With robust losses it is the sandwich of M-estimators: A^-1 B A^-1 with A the Hessian including
 // rho'', B the sum of g g^T over features, g their gradients.  Both assume that features err
 // independently; V and B are replaced as far as those of a pose do not (gradient_variance.hpp).
@@ -32,11 +33,12 @@ struct Uncertainty {
 };
 
 /// Covariance of the free parameters.
-/// @param noise  of each error block: see estimate_noise()
-/// @param poses  of the problem's samples
+/// @param noise      of each error block: see estimate_noise()
+/// @param poses      of the problem's samples
+/// @param of_priors  (coordinates x coordinates) variance of the gradients of priors
 [[nodiscard]] Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
-                                      const std::vector<BlockNoise>& noise,
-                                      const PoseGroups& poses);
+                                      const std::vector<BlockNoise>& noise, const PoseGroups& poses,
+                                      const Eigen::MatrixXd& of_priors);
 
 namespace detail {
 /// Standard deviations from a covariance; infinite if more than a little of a parameter is

@@ -358,13 +358,7 @@ TEST(PatchUrdfRos2Control, IsChosenForJointsThatHaveAnOffsetThere) {
             patched(with, offset, OffsetStyle::ros2_control));
   EXPECT_EQ(patched(without, offset, OffsetStyle::as_read),
             patched(without, offset, OffsetStyle::rising));
-  const auto into_rising = [&](const std::string& text) {
-    return goes_into_rising(text, "arm.urdf", parse_urdf(text, "arm.urdf"), offset);
-  };
-  EXPECT_FALSE(into_rising(with));
-  EXPECT_TRUE(into_rising(without));
   const std::string calibrated = driven_joint("", "<calibration rising='0'/>");
-  EXPECT_FALSE(into_rising(calibrated)) << "it is read already";
   const auto places = [&](const std::string& text) {
     return offset_places(text, "arm.urdf", parse_urdf(text, "arm.urdf"), offset);
   };

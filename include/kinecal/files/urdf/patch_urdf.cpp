@@ -107,12 +107,6 @@ OffsetPlaces offset_places(const std::string& text, const std::string& name_for_
   return places;
 }
 
-bool goes_into_rising(const std::string& text, const std::string& name_for_messages,
-                      const Robot& robot, const std::vector<JointPatch>& patches) {
-  const OffsetPlaces places = offset_places(text, name_for_messages, robot, patches);
-  return !places.has_calibration && !places.rising.empty();
-}
-
 std::map<std::string, double> ros2_control_offsets(const std::string& text,
                                                    const std::string& name_for_messages) {
   const detail::UrdfText source(text, name_for_messages);

@@ -72,11 +72,6 @@ struct OffsetPlaces {
                                          const std::string& name_for_messages, const Robot& robot,
                                          const std::vector<JointPatch>& patches);
 
-/// True if OffsetStyle::as_read writes the first <calibration rising> of a URDF: its programs may not read it.
-/// @param text  the URDF, like the other arguments as patch_urdf() takes them
-[[nodiscard]] bool goes_into_rising(const std::string& text, const std::string& name_for_messages,
-                                    const Robot& robot, const std::vector<JointPatch>& patches);
-
 /// The nonzero offsets of joints in `ros2_control`, radians or metres as the driver has them.
 /// @param text               the URDF, UTF-8
 /// @param name_for_messages  name of the text in messages: its file

@@ -1,0 +1,206 @@
+// Definitions of judge_read_back.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/procedure/judge_read_back.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/files/results/result_files.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/procedure/calibrated_files.hpp"
+#include "kinecal/solve/statistics.hpp"
+#include "kinecal/trust/judge_noise.ipp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+[[nodiscard]] ParameterValues span_of(const Eigen::VectorXd& values) {
+  return {values.data(), static_cast<std::size_t>(values.size())};
+}
+
+/// Distances of the error blocks, without priors.
+[[nodiscard]] std::vector<BlockError> errors_of(const std::vector<BlockStatistics>& blocks) {
+  std::vector<BlockError> errors;
+  for (const BlockStatistics& block : blocks) {
+    if (block.count > 0 && (block.unit == "m" || block.unit == "px")) {
+      errors.push_back({block.name, block.unit, block.after.rms});
+    }
+  }
+  return errors;
+}
+
+[[nodiscard]] std::vector<BlockError> errors_of(const AnyProblem& problem, ParameterValues values) {
+  return errors_of(block_statistics(problem, values, values));
+}
+
+/// Joints whose zeros are elsewhere than in origins.
+struct Zeros {
+  std::set<std::string> all;
+  std::set<std::string> without_rising;  ///< those that are not in <calibration rising>
+  bool rising_is_read = true;            ///< the URDF had it before, or nothing is there
+};
+
+[[nodiscard]] Zeros zeros_of(const CalibratedRobot& calibrated, const CalibrationOptions& options) {
+  Zeros zeros{options.in_servos, options.in_servos};
+  if (options.offsets == OffsetStyle::origin) return zeros;
+  const CalibrationSetup& setup = calibrated.setup;
+  const std::vector<JointPatch> patches =
+      joint_patches(setup.robot, calibrated.result.table, options.in_servos);
+  const OffsetPlaces places = offset_places(setup.urdf_text, setup.urdf, setup.robot, patches);
+  const bool all_rise = options.offsets == OffsetStyle::rising;
+  for (const JointPatch& patch : patches) {
+    if (patch.offset == 0.0) continue;
+    zeros.all.insert(patch.joint);
+    const bool rises = all_rise || std::find(places.rising.begin(), places.rising.end(),
+                                             patch.joint) != places.rising.end();
+    if (!rises) zeros.without_rising.insert(patch.joint);
+  }
+  zeros.rising_is_read = places.has_calibration || zeros.all == zeros.without_rising;
+  return zeros;
+}
+
+/// What a reader of calibrated.urdf finds.
+/// @param problem  of the robot that it describes
+/// @param zeros    the joints whose zeros it finds elsewhere than in origins
+[[nodiscard]] std::vector<BlockError> errors_of_reader(const AnyProblem& problem,
+                                                       const Robot& robot,
+                                                       const std::set<std::string>& zeros,
+                                                       const CalibratedRobot& calibrated) {
+  const ParameterTable& result = calibrated.result.table;
+  Eigen::VectorXd values = problem.table().values();
+  for (int p = 0; p < problem.table().size(); ++p) {
+    const std::string& name = problem.table()[p].name;
+    const std::string& owner = problem.owners()[static_cast<std::size_t>(p)];
+    const bool is_read = !robot.has_joint(owner) || (name == owner && zeros.contains(owner));
+    const int found = result.find(name);
+    if (!is_read) values(p) = 0.0;  // in the URDF, or lost
+    if (is_read && found >= 0) values(p) = result[found].value;
+  }
+  return errors_of(problem, span_of(values));
+}
+
+/// Parameters of joints that are neither zeros nor frames, and not zero.
+[[nodiscard]] std::vector<int> lost_parameters(const AnyProblem& problem, const Robot& robot,
+                                               const ParameterTable& table) {
+  std::vector<int> lost;
+  for (int p = 0; p < problem.table().size(); ++p) {
+    const std::string& owner = problem.owners()[static_cast<std::size_t>(p)];
+    const std::string& name = problem.table()[p].name;
+    if (!robot.has_joint(owner) || robot.joint(owner).mimic || name == owner) continue;
+    if (is_frame_parameter(name, owner) || table[p].value == 0.0) continue;
+    lost.push_back(p);
+  }
+  return lost;
+}
+
+/// The fit of a search for what a URDF can hold; empty if that is not possible.
+[[nodiscard]] std::vector<BlockError> fit_of_geometry(const CalibratedRobot& calibrated,
+                                                      const CalibrationOptions& options) {
+  const PreparedCalibration& setup = calibrated.setup;
+  try {
+    return errors_of(search_robot(*setup.config, setup.robot, calibrated.samples,
+                                  {.geometry_only = true, .hold = options.hold})
+                         .found.result.blocks);
+  } catch (const InputError&) {  // several steps
+    return {};
+  } catch (const std::invalid_argument&) {  // samples of too few poses
+    return {};
+  }
+}
+
+/// The grade of a step if its errors are those of a reader.
+[[nodiscard]] Grade grade_of(Assessment step, const ReaderFit& reader, const ReaderFit& driver) {
+  for (std::size_t b = 0; b < reader.errors.size(); ++b) {
+    const double times = reader.errors[b].rms / driver.errors[b].rms;
+    for (BlockNoise& noise : step.noise) {
+      if (noise.block != reader.errors[b].block || !std::isfinite(times)) continue;
+      noise.sigma *= times;
+      noise.robust *= times;
+    }
+  }
+  Judgement of_noise;
+  judge_noise(step, of_noise);
+  return std::max(Grade::use_with_care, of_noise.verdict);
+}
+
+/// True if errors are so large that somebody may notice.
+[[nodiscard]] bool matter(const std::vector<BlockError>& errors, double size) {
+  constexpr double kNoticed = 0.01;  // of what is too large
+  return std::any_of(errors.begin(), errors.end(), [&](const BlockError& error) {
+    return error.rms > kNoticed * distance_limits(error.unit, size).care;
+  });
+}
+
+/// Why a reader sees more.
+[[nodiscard]] std::string why_worse(const ReadBack& read_back) {
+  const ReaderFit &reader = *read_back.of(read_back.judged), &driver = read_back.fits.front();
+  std::string text = "the URDF alone leaves " + errors_text(reader.errors) +
+                     ", with calibration.yaml " + errors_text(driver.errors) + ": ";
+  if (read_back.lost.empty()) {
+    return text + "<calibration rising> is not read; write zeros into origins (--offsets origin)";
+  }
+  const std::size_t others = read_back.lost.size() - 1;
+  text += "no URDF holds '" + read_back.lost.front() + "'";
+  if (others > 0) text += " and " + std::to_string(others) + " more";
+  return text +
+         "; apply them in the driver (true_position.hpp; --reader driver), or find what a URDF "
+         "holds (kinecal identify --geometry-only)";
+}
+
+}  // namespace
+}  // namespace detail
+
+void judge_read_back(CalibratedRobot& calibrated, const CalibrationOptions& options) {
+  const PreparedCalibration& setup = calibrated.setup;
+  ReadBack& found = calibrated.read_back;
+  found = {.judged = options.reader.value_or(Reader::urdf)};
+  if (setup.urdf_text.empty() || !calibrated.result.converged) return;
+  Diagnostics diagnostics;
+  Robot robot;
+  Calibration read;
+  try {
+    ResultFileOptions files;
+    files.offsets = options.offsets;
+    files.in_servos = options.in_servos;
+    robot = parse_urdf(calibrated_urdf(calibrated, files), "calibrated.urdf");
+    read = assemble(*setup.config, robot, calibrated.samples, diagnostics);
+  } catch (const InputError&) {  // writing the files says so
+    return;
+  }
+  if (!diagnostics.errors.empty()) return;
+  const CalibrationStep& step = setup.calibration.steps.back();
+  const Eigen::VectorXd values = calibrated.result.table.values();
+  found.fits.push_back({Reader::driver, detail::errors_of(*step.problem, detail::span_of(values))});
+  const auto read_by = [&](Reader reader, const std::set<std::string>& zeros) {
+    found.fits.push_back(
+        {reader, detail::errors_of_reader(*read.steps.back().problem, robot, zeros, calibrated)});
+  };
+  const detail::Zeros zeros = detail::zeros_of(calibrated, options);
+  read_by(Reader::urdf, zeros.all);
+  if (!zeros.rising_is_read ||
+      (found.judged == Reader::origins && zeros.all != zeros.without_rising)) {
+    read_by(Reader::origins, zeros.without_rising);
+  }
+  if (found.of(found.judged) == nullptr) found.judged = Reader::urdf;
+  const std::vector<int> lost =
+      detail::lost_parameters(*step.problem, setup.robot, calibrated.result.table);
+  for (const int p : lost) found.lost.push_back(calibrated.result.table[p].name);
+  const ReaderFit& judged = *found.of(found.judged);
+  if (calibrated.assessments.empty()) return;
+  constexpr double kWorse = 1.5;
+  const Assessment& last = calibrated.assessments.back();
+  found.is_worse = times_larger(judged.errors, found.fits.front().errors) > kWorse &&
+                   detail::matter(judged.errors, last.size);
+  if (!found.is_worse) return;
+  if (!lost.empty()) {
+    found.geometry_only = detail::fit_of_geometry(calibrated, options);
+  }
+  calibrated.judgement.add(detail::grade_of(last, judged, found.fits.front()),
+                           detail::why_worse(found), {Remedy::Kind::serve});
+}
+
+}  // namespace kinecal
