@@ -41,7 +41,7 @@ namespace {
 struct Zeros {
   std::set<std::string> all;
   std::set<std::string> without_rising;  ///< those that are not in <calibration rising>
-  bool rising_is_read = true;            ///< the URDF had it before, or nothing is there
+  bool rising_is_read = true;  ///< somebody chose it, the URDF had it before, or nothing is there
 };
 
 [[nodiscard]] Zeros zeros_of(const CalibratedRobot& calibrated, const CalibrationOptions& options) {
@@ -59,7 +59,7 @@ struct Zeros {
                                              patch.joint) != places.rising.end();
     if (!rises) zeros.without_rising.insert(patch.joint);
   }
-  zeros.rising_is_read = places.has_calibration || zeros.all == zeros.without_rising;
+  zeros.rising_is_read = all_rise || places.has_calibration || zeros.all == zeros.without_rising;
   return zeros;
 }
 
@@ -158,7 +158,8 @@ void judge_read_back(CalibratedRobot& calibrated, const CalibrationOptions& opti
   const PreparedCalibration& setup = calibrated.setup;
   ReadBack& found = calibrated.read_back;
   found = {.judged = options.reader.value_or(Reader::urdf)};
-  if (setup.urdf_text.empty() || !calibrated.result.converged) return;
+  const bool has_own_poses = !setup.config->per_sample.empty();  // of joints that no URDF has
+  if (setup.urdf_text.empty() || has_own_poses || !calibrated.result.converged) return;
   Diagnostics diagnostics;
   Robot robot;
   Calibration read;

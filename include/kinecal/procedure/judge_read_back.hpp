@@ -9,8 +9,8 @@
 
 namespace kinecal {
 
-/// Sets CalibratedRobot::read_back, and judges it.  Does nothing without the text of the URDF, or if it cannot hold
-/// the result.
+/// Sets CalibratedRobot::read_back, and judges it.  Does nothing without the text of the URDF, if it cannot hold the
+/// result, or where a target has a pose of its own in each sample.
 void judge_read_back(CalibratedRobot& calibrated, const CalibrationOptions& options);
 
 }  // namespace kinecal

@@ -55,7 +55,7 @@ class SlideAndArm {
     measured.target_frame = "smr";
     measured.is_point = true;
     measured.sensor_frame = "tracker";
-    return offset_effects(robot, measured, {}, {}, driven_joints(robot, measured));
+    return offset_effects(robot, measured, {}, driven_joints(robot, measured));
   }
 
  private:
@@ -119,7 +119,7 @@ TEST(DeterminedOffsets, AreNoneOfAJointThatMovesTargetAndCameraAlike) {
   MeasuredTarget measured{"base", "j6_link", "camera"};
   measured.is_camera = true;
   const OffsetEffects effects =
-      offset_effects(robot, measured, {"camera_joint"}, {}, driven_joints(robot, measured));
+      offset_effects(robot, measured, {"camera_joint"}, driven_joints(robot, measured));
   EXPECT_FALSE(effects.offsets[0].is_seen);
   EXPECT_EQ(effects.offsets[1].imitated_by, "camera_joint");
   EXPECT_TRUE(effects.offsets[6].determined) << "points at known places";

@@ -110,10 +110,8 @@ std::vector<std::string> driven_joints(const Robot& robot, const MeasuredTarget&
 
 OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
                              const std::vector<std::string>& frames,
-                             const std::vector<std::string>& kept,
                              const std::vector<std::string>& joints) {
-  std::set<std::string> corrected(frames.begin(), frames.end());
-  corrected.insert(kept.begin(), kept.end());
+  const std::set<std::string> corrected(frames.begin(), frames.end());
   const detail::GeneratedPoses poses(robot, measured, corrected);
   std::vector<detail::FrameSpan> free;
   const auto add = [&](const std::string& name, bool is_point) {
@@ -136,10 +134,6 @@ OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
     });
     constexpr double kNothing = 1e-9;  // metres per radian: rounding of differences
     effect.is_seen = column.size() > 0 && column.lpNorm<Eigen::Infinity>() > kNothing;
-    if (std::find(kept.begin(), kept.end(), joint) != kept.end()) {
-      effect.imitated_by = joint;
-      continue;
-    }
     effect.determined = effect.is_seen && span.add(column);
     if (effect.determined || !effect.is_seen) continue;
     const auto same = [&](const detail::FrameSpan& f) { return f.contains(column); };
@@ -147,10 +141,6 @@ OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
         std::find_if(free.begin(), free.end(), [&](const auto& f) { return f.name == joint; });
     if (by == free.end()) by = std::find_if(free.begin(), free.end(), same);
     if (by != free.end()) effect.imitated_by = by->name;
-  }
-  for (const std::string& frame : kept) {
-    const auto columns = detail::frame_columns(poses, frame, false);
-    effects.frames_determined = detail::add_all(span, columns) && effects.frames_determined;
   }
   return effects;
 }

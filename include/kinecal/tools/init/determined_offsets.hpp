@@ -44,7 +44,7 @@ struct OffsetEffect {
 /// The effects of several offsets, and whether samples determine the free frames beside them.
 struct OffsetEffects {
   std::vector<OffsetEffect> offsets;  ///< in the given order
-  bool frames_determined = true;      ///< also those that a prior keeps
+  bool frames_determined = true;
 };
 
 /// The driven joints that move the target or the sensor: those of the target's chain from its base,
@@ -55,11 +55,9 @@ struct OffsetEffects {
 
 /// The effects of these joints' offsets.
 /// @param frames  joints whose frames are free
-/// @param kept    further ones that a prior keeps: they do not replace offsets
 /// @throws RobotError  like make_chain()
 [[nodiscard]] OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
                                            const std::vector<std::string>& frames,
-                                           const std::vector<std::string>& kept,
                                            const std::vector<std::string>& joints);
 
 }  // namespace kinecal

@@ -68,13 +68,11 @@ inline void remove_common(std::vector<ChainJoint>& a, std::vector<ChainJoint>& b
 }
 
 /// Frees the offsets of joints that samples determine, and gives the reason for the others.
-/// @param kept  joints whose frames are free and kept by a prior
-/// @returns     whether samples also determine the frames
+/// @returns  whether samples also determine the frames
 inline bool free_offsets(InitPlan& plan, const Robot& robot, const MeasuredTarget& measured,
-                         const std::vector<std::string>& frames,
-                         const std::vector<std::string>& kept) {
+                         const std::vector<std::string>& frames) {
   const OffsetEffects effects =
-      offset_effects(robot, measured, frames, kept, driven_joints(robot, measured));
+      offset_effects(robot, measured, frames, driven_joints(robot, measured));
   for (const OffsetEffect& effect : effects.offsets) {
     if (effect.determined) {
       plan.free_params.push_back({"", effect.joint, {}});

@@ -40,24 +40,19 @@ namespace kinecal::detail {
   if (board) add_board(plan, answers.target_frame, answers.arm);
   MeasuredTarget seen = seen_by_camera(answers, answers.arm);
   if (!board) seen.target_frame.clear();
-  std::vector<std::string> kept;
-  if (mount != head_frame) kept.push_back(mount);
-  const bool determined = free_offsets(plan, robot, seen, {head_frame}, kept);
+  std::vector<std::string> frames = {head_frame};
+  if (mount != head_frame) frames.push_back(mount);
+  const bool determined = free_offsets(plan, robot, seen, frames);
   if (!head.empty()) {
     free_frame(plan, head_frame, "How the part that carries the camera is mounted on the robot.");
   }
   free_frame(plan, mount, "How the camera is mounted.");
   free_camera(plan, answers, false);
   add_hand_eye(plan, answers);
-  if (!head.empty()) {
+  if (!determined) {
     keep_near_zero(plan, mount,
-                   "Samples cannot distinguish a rotation of the joint that carries the camera "
-                   "from an opposite one of the camera's frame: this block keeps the correction of "
-                   "the camera's frame small.");
-  } else if (!determined) {
-    keep_near_zero(plan, mount,
-                   "The joints of the arm cannot show all of the camera's frame: this block keeps "
-                   "its correction small.");
+                   "The joints cannot show all of the camera's frame beside the others: this block "
+                   "keeps its correction small.");
   }
   return plan;
 }
@@ -78,8 +73,7 @@ namespace kinecal::detail {
   add_camera_model(plan, answers);
   const std::string mount = require_mount(robot, answers, {answers.base}).name;
   add_board(plan, answers.target_frame, answers.base);
-  const bool determined =
-      free_offsets(plan, robot, seen_by_camera(answers, answers.base), {mount}, {});
+  const bool determined = free_offsets(plan, robot, seen_by_camera(answers, answers.base), {mount});
   free_frame(plan, mount, "How the camera is mounted.");
   free_camera(plan, answers, false);
   add_hand_eye(plan, answers);
@@ -118,7 +112,7 @@ namespace kinecal::detail {
   followed.target_frame = reflector;
   followed.is_point = true;
   followed.sensor_frame = tracker;
-  const bool determined = free_offsets(plan, robot, followed, {}, {});
+  const bool determined = free_offsets(plan, robot, followed, {});
   free_frame(
       plan, tracker,
       "Where the tracker stands, seen from link " + name_to_yaml(answers.base) +
