@@ -91,7 +91,7 @@ int identify(const IdentifyOptions& options) {
         options.output);
     return kNotUsable;
   }
-  say("{}", read_back_text(findings.read_back));
+  if (!findings.read_back.lost.empty()) say("{}", read_back_text(findings.read_back));
   for (const std::string& reason : findings.judgement.reasons) say("  - {}\n", reason);
   InputOptions next = calibration;
   next.config = options.output;

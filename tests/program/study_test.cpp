@@ -100,7 +100,19 @@ TEST_F(Study, WritesAPageWithChartsAndTables) {
 
 // The prior holds this parameter: what samples say of it is so little that errors of second order count.
 TEST_F(Study, NamesAParameterThatVariesMoreThanPredicted) {
-  const test::Outcome outcome = call("study", "--robots 1 --repeat 60 --poses 15");
+  ASSERT_EQ(run(test::kinecal_program() + " simulate --urdf " + kFetchFolder +
+                "fetch.urdf --scene scene.yaml --poses 15 -o sim")
+                .code,
+            0);
+  std::string config = read("sim/calibrate.yaml");
+  const std::string offsets = "free_params:\n";
+  config.replace(config.find(offsets), offsets.size(), offsets + " - head_tilt_joint\n");
+  write("calibrate.yaml",
+        config +
+            " - {name: restrict, type: outrageous, param: head_camera_rgb_joint, joint_scale: 0.0, "
+            "position_scale: 1.0, rotation_scale: 1.0}\n");
+  const test::Outcome outcome =
+      call("study", "--config calibrate.yaml --robots 1 --repeat 60 --poses 15");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, ContainsRegex("\nNot as predicted: 'head_camera_rgb_joint_b' varies "
                                          "1\\.[0-9]+ times as much as predicted"));

@@ -48,6 +48,20 @@ namespace detail {
   return note;
 }
 
+/// Priors that the samples contradict.
+[[nodiscard]] inline std::string prior_note(const Assessment& step, const ParameterTable& table) {
+  std::string note;
+  for (const PriorPull& pull : step.pulls) {
+    const Parameter& p = table[pull.parameter];
+    note += fmt::format(
+        "  Prior '{}' shifts '{}' by {}, {:.1f} times what it and the samples allow; +- include "
+        "that "
+        "they\n  disagree\n",
+        pull.prior, p.name, reading(pull.shift, p.unit), pull.times);
+  }
+  return note;
+}
+
 [[nodiscard]] inline std::string fit_table(const Findings& findings) {
   TextTable table({"error block", "features", "unit", "before", "fitted", "held out", "worst",
                    "noise", "sigma given"});
@@ -69,7 +83,8 @@ namespace detail {
         design_effect_note(last.uncertainty.design_effect, last.readings, last.neighbours.together);
   }
   for (const Assessment& step : findings.assessments) {
-    if (&step == &findings.assessments.back()) note += lack_of_fit_note(step);
+    if (&step != &findings.assessments.back()) continue;
+    note += lack_of_fit_note(step) + prior_note(step, findings.result.table);
   }
   return "Fit: distances of features, root of the mean square; noise of a coordinate\n" +
          table.str() + note;

@@ -51,15 +51,16 @@ std::string errors_text(const std::vector<BlockError>& errors) {
 
 std::string read_back_text(const ReadBack& read_back) {
   constexpr double kSame = 1.01;
-  const bool differ =
-      std::any_of(read_back.fits.begin(), read_back.fits.end(), [&](const ReaderFit& fit) {
-        return times_larger(fit.errors, read_back.fits.front().errors) > kSame;
-      });
-  if (!differ) return "";
   TextTable table({"read", "fits"}, 2);
-  for (const ReaderFit& fit : read_back.fits) {
-    table.add({std::string(detail::files_of(fit.reader)), errors_text(fit.errors)});
+  int rows = 0;
+  const std::vector<BlockError>* last = nullptr;
+  for (auto fit = read_back.fits.rbegin(); fit != read_back.fits.rend(); ++fit) {
+    if (last != nullptr && !(times_larger(*last, fit->errors) > kSame)) continue;
+    table.add({std::string(detail::files_of(fit->reader)), errors_text(fit->errors)});
+    last = &fit->errors;
+    ++rows;
   }
+  if (rows < 2) return "";
   std::string text = "The files as they are read\n" + table.str();
   if (read_back.of(Reader::origins) != nullptr) {
     text +=
