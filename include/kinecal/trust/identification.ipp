@@ -85,14 +85,16 @@ class Identification {
   /// Leaves out of candidates what the samples do not determine beside the base.
   /// @param linear      at the last solution
   /// @param candidates  those of the search: of what may be freed in part, the parameters that are left
-  /// @returns           what the base absorbs
+  /// @returns           what the base absorbs, of these and of single parameters
   [[nodiscard]] std::vector<AbsorbedParameters> keep_determined(
       const ParameterSearch& linear, std::vector<IdentifyCandidate>& candidates) {
     const std::vector<int> base = linear.independent(base_);
     std::vector<AbsorbedParameters> all;
     for (std::size_t k = 0; k < candidates.size(); ++k) {
       const std::vector<int>& own = whole_[k].columns;
-      const std::vector<int> kept = linear.determined(base, own);
+      const bool in_part = candidates[k].in_part;
+      if (!in_part && own.size() > 1) continue;
+      const std::vector<int> kept = in_part ? linear.determined(base, own) : std::vector<int>{};
       AbsorbedParameters absorbed{static_cast<int>(k), {}, {}};
       std::set<std::string> by;
       for (const int c : own) {
@@ -103,7 +105,7 @@ class Identification {
       }
       absorbed.by.assign(by.begin(), by.end());
       if (!by.empty()) all.push_back(std::move(absorbed));
-      if (!candidates[k].in_part) continue;
+      if (!in_part) continue;
       columns_[k].columns = kept;
       candidates[k].parameters.clear();
       for (const int c : kept) candidates[k].parameters.push_back(index(c));

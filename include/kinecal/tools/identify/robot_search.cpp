@@ -147,12 +147,16 @@ void hold_in_search(const std::vector<std::string>& names, const AnyProblem& pro
                        ": nothing says where it is, so the search needs it free; a configuration "
                        "can give its pose under 'free_frames_initial_values'");
     }
+    std::size_t held = std::erase_if(task.base, is_held);
+    for (IdentifyCandidate& candidate : task.candidates) {
+      if (candidate.in_part) held += std::erase_if(candidate.parameters, is_held);
+    }
     const auto has_held = [&](const IdentifyCandidate& candidate) {
       known.insert(candidate.name);
-      return candidate.name == name ||
+      return candidate.name == name || candidate.parameters.empty() ||
              std::any_of(candidate.parameters.begin(), candidate.parameters.end(), is_held);
     };
-    if (std::erase_if(task.base, is_held) + std::erase_if(task.candidates, has_held) > 0) continue;
+    if (held + std::erase_if(task.candidates, has_held) > 0) continue;
     throw InputError("--hold " + name + ": is not a candidate of the search" +
                      did_you_mean(name, known));
   }
