@@ -211,6 +211,11 @@ TEST(Mounts, ACameraInTheHandIsFoundThatTheConfigurationHolds) {
   const RobotSearch search = recording.search();
   EXPECT_TRUE(is_named(search, "frame of camera_color_joint")) << search_text(search);
   EXPECT_LE(freed(search).size(), 2U) << search_text(search);
+  const CalibrationResult result =
+      calibrate(assembled(search.config, recording.robot, recording.samples));
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.table["camera_color_joint_b"].initial, 0.0) << "the table shows the change";
+  EXPECT_NEAR(result.table["camera_color_joint_b"].value, 2.0 * kDegree, 0.1 * kDegree);
 }
 
 TEST(Mounts, TheChangeOfACameraThatIsFreeIsPrinted) {

@@ -81,6 +81,11 @@ struct ModelChain {
   return !frame.is_fixed && (!robot.has_joint(frame.name) || !moves(robot.joint(frame.name).type));
 }
 
+/// True if the URDF has the pose of a joint: an identity is a placeholder.
+[[nodiscard]] inline bool has_origin(const Joint& joint) {
+  return !joint.origin.translation.isZero() || !joint.origin.rotation.isIdentity();
+}
+
 /// A fixed joint before the first or after the last moving joint of a chain: how a robot, a camera or a tool is mounted.
 struct Mount {
   std::string joint;

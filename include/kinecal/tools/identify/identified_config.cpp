@@ -165,9 +165,14 @@ Config identified_config(const Config& config, const IdentifyTask& task, const I
        step.free_frames) {  // poses that were searched for are known now
     const bool is_whole =
         std::all_of(frame.axes.begin(), frame.axes.end(), [](bool a) { return a; });
-    if (frame.is_fixed || found.result.table.size() == 0 ||
-        (problem.robot().has_joint(frame.name) && !is_whole)) {
-      continue;
+    if (frame.is_fixed || found.result.table.size() == 0) continue;
+    if (problem.robot().has_joint(frame.name)) {
+      const std::vector<FreeFrameConfig>& given = config.steps.front().free_frames;
+      const bool was_free = std::any_of(given.begin(), given.end(),
+                                        [&](const auto& of) { return of.name == frame.name; });
+      const bool begins_at_urdf =
+          !was_free && detail::has_origin(problem.robot().joint(frame.name));
+      if (!is_whole || begins_at_urdf) continue;
     }
     Eigen::Matrix<double, 6, 1> pose;
     for (std::size_t axis = 0; axis < 6; ++axis) {

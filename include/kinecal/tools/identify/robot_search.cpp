@@ -114,8 +114,7 @@ namespace {
   }
   std::string text;
   for (const auto& [joint, parameters] : mounts) {
-    const Pose<double>& origin = problem.robot().joint(joint).origin;
-    if (origin.translation.isZero() && origin.rotation.isIdentity()) continue;
+    if (!has_origin(problem.robot().joint(joint))) continue;
     text += fmt::format("the frame of {} is free from the beginning and changes by {}\n", joint,
                         change_of(search.found.result.table, parameters, true));
   }
