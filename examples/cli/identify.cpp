@@ -37,9 +37,10 @@ bool are_files(const std::vector<std::string>& inputs, const std::string& output
          !is_standard_output(output);
 }
 
-/// The name of a candidate for --tell-apart: one of several parameters is that of its first.
+/// The name of a candidate for --tell-apart: one of several parameters is that of its first, that of a frame without its
+/// axes.
 std::string plain_name(const std::string& name) {
-  return name.substr(0, name.find(','));
+  return name.substr(0, name.find_first_of(",:"));
 }
 
 /// The poses that would decide between what was freed and the first that looks alike, as a command; empty if nothing does.

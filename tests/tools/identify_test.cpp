@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -62,6 +63,18 @@ TEST(Identify, FindsGeometryOfThePandaThatHoldsElsewhere) {
   const FoundErrors found = find_errors(config, robot, samples, true);
   EXPECT_LT(found.identified.steps.back().fitted, 0.22e-3)
       << "0.194 mm with 30 parameters chosen by hand";
+}
+
+TEST(Identify, FindsTheSameInAnyOrderOfTheSamples) {
+  KINECAL_NEEDS_DATA("mukca_panda");
+  const auto data = test::data_folder() / "mukca_panda";
+  Diagnostics diagnostics;
+  const Robot robot = read_urdf((data / "panda.urdf").string());
+  auto samples = read_samples((data / "panda_6/front.yaml").string(), diagnostics);
+  const Config config = read_config((data / "panda_6/minimal.yaml").string(), diagnostics);
+  const std::vector<std::string> names = find_errors(config, robot, samples).names();
+  std::reverse(samples.begin(), samples.end());
+  EXPECT_EQ(find_errors(config, robot, samples).names(), names);
 }
 
 TEST(Identify, FindsTheErrorsOfTheSimulatedFetch) {
@@ -221,8 +234,7 @@ TEST(Identify, NamesWhatNoSampleTellsApart) {
   std::vector<std::string> names = step.inseparable;
   names.push_back(step.freed);
   EXPECT_THAT(names, testing::IsSupersetOf({"elbow_joint_z", "wrist_1_joint_z"}));
-  EXPECT_THAT(search_text(search),
-              HasSubstr("no sample like these tells " + step.freed + " from "));
+  EXPECT_THAT(search_text(search), HasSubstr("either " + step.freed + " or "));
 }
 
 TEST(Identify, HasStandardErrorsAndWhatWasTriedAndNotFreed) {

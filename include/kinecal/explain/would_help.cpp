@@ -10,9 +10,7 @@
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/doubts/some_samples.ipp"
-#include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/text/reading.hpp"
-#include "kinecal/tools/identify/candidates.ipp"
 #include "kinecal/tools/identify/identified_config.hpp"
 #include "kinecal/trust/plausible_change.ipp"
 #include "kinecal/trust/pose_groups.hpp"
@@ -47,19 +45,6 @@ namespace {
   return {};
 }
 
-/// The fixed joints between the base and sensors whose frames are held: adapters, tools.
-[[nodiscard]] std::vector<const Joint*> held_mounts(const Config& config, const Robot& robot) {
-  std::vector<const Joint*> mounts;
-  for (const Joint* joint : joints_between(config, robot)) {
-    const std::vector<FreeFrameConfig>& known = config.steps.front().free_frames;
-    const bool is_known = std::any_of(known.begin(), known.end(), [&](const FreeFrameConfig& of) {
-      return of.name == joint->name;
-    });
-    if (joint->type == JointType::fixed && !is_known) mounts.push_back(joint);
-  }
-  return mounts;
-}
-
 /// Whether residuals are larger than what robots are good to: a thousandth of their size, or a pixel.
 [[nodiscard]] bool matters(const Assessment& step) {
   constexpr double kOfSize = 1e-3, kPixel = 1.0;
@@ -86,13 +71,7 @@ WouldHelp would_help(const Config& config, const Robot& robot, std::span<const S
   if (!fits || samples.size() < kFewest) return {};
   const std::vector<Sample> some = detail::some_of(samples, kMost);
   Diagnostics ignored;
-  Config all = with_all_candidates(config, robot, some);
-  const std::vector<const Joint*> mounts = detail::held_mounts(config, robot);
-  for (const Joint* mount : mounts) {
-    all.steps.front().free_frames.push_back(
-        {mount->name, {true, true, true, true, true, true}, all.steps.front().place});
-  }
-  Calibration wide = assemble(all, robot, some, ignored);
+  Calibration wide = assemble(with_all_candidates(config, robot, some), robot, some, ignored);
   if (!ignored.errors.empty() || wide.steps.size() != 1) return {};
   const AnyProblem& problem = *wide.steps.front().problem;
   if (are_one_pose(problem, some)) return {};  // the verdict says so
@@ -105,14 +84,6 @@ WouldHelp would_help(const Config& config, const Robot& robot, std::span<const S
   const std::vector<int> base = detail::free_in(wide.table, calibration);
   const auto is_free = [&](int p) { return std::find(base.begin(), base.end(), p) != base.end(); };
   std::vector<IdentifyCandidate> candidates = identify_task(config, problem, some).candidates;
-  for (const Joint* mount : mounts) {
-    for (const auto axis : kFrameAxes) {
-      const std::string name = parameter_name(mount->name, axis);
-      if (const int p = wide.table.find(name); p >= 0) {
-        candidates.push_back({name, {p}, detail::kGeometry});
-      }
-    }
-  }
   std::erase_if(candidates, [&](const IdentifyCandidate& candidate) {
     return std::any_of(candidate.parameters.begin(), candidate.parameters.end(), is_free);
   });
@@ -127,7 +98,7 @@ WouldHelp would_help(const Config& config, const Robot& robot, std::span<const S
        i < found.steps.size() && found.steps[i].held_out < kMuch * found.steps[i - 1].held_out;
        ++i) {
     const IdentifyCandidate& candidate = candidates[static_cast<std::size_t>(found.chosen[i - 1])];
-    const std::string& name = candidate.name;
+    const std::string name = candidate_name(candidate, wide.table);
     const std::string camera = detail::owning_camera(problem, candidate.parameters);
     help.camera = i == 1 || help.camera == camera ? camera : "";
     if (i == 1) help.first_left = found.steps[i].held_out / found.steps[0].held_out;

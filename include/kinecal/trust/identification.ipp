@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,10 @@ class Identification {
       : calibration_(calibration),
         step_(calibration.steps.front()),
         all_(all_columns(*step_.problem, base, candidates)) {
+    std::erase_if(step_.unknown_frames, [&](const UnknownFrame& frame) {  // a mount is a candidate
+      return std::find_first_of(base.begin(), base.end(), frame.axes.begin(), frame.axes.end()) ==
+             base.end();
+    });
     unknown_ = step_.unknown_frames;
     constexpr int kFolds = 10;
     const PoseGroups poses = pose_groups(*step_.problem, samples);
@@ -39,10 +45,12 @@ class Identification {
       SearchCandidate& of = columns_.emplace_back();
       of.rank = candidate.rank;
       for (const int p : candidate.parameters) of.columns.push_back(all_.column(p));
-      const bool has_untouched =
-          std::any_of(of.columns.begin(), of.columns.end(), [](int column) { return column < 0; });
-      if (has_untouched) of.columns.clear();  // no residual depends on it
+      const auto untouched =  // no residual depends on them
+          std::remove_if(of.columns.begin(), of.columns.end(), [](int c) { return c < 0; });
+      const bool is_kept = candidate.in_part || untouched == of.columns.end();
+      of.columns.erase(is_kept ? untouched : of.columns.begin(), of.columns.end());
     }
+    whole_ = columns_;
     // Once: each solve begins where the last one ended.
     for (const auto& [parameter, value] : step_.assignments)
       calibration.table[parameter].value = value;
@@ -60,24 +68,63 @@ class Identification {
 
   [[nodiscard]] const std::vector<SearchCandidate>& candidates() const { return columns_; }
   [[nodiscard]] const std::vector<int>& base() const { return base_; }  ///< columns
+  /// Columns of some candidates.
+  [[nodiscard]] std::vector<int> columns(const std::vector<int>& chosen) const {
+    std::vector<int> all;
+    for (const int k : chosen) {
+      const std::vector<int>& own = columns_[static_cast<std::size_t>(k)].columns;
+      all.insert(all.end(), own.begin(), own.end());
+    }
+    return all;
+  }
   /// The parameter of a column.
   [[nodiscard]] const Parameter& parameter(int column) const {
     return calibration_.table[index(column)];
   }
+
+  /// Leaves out of candidates what the samples do not determine beside the base.
+  /// @param linear      at the last solution
+  /// @param candidates  those of the search: of what may be freed in part, the parameters that are left
+  /// @returns           what the base absorbs, of these and of single parameters
+  [[nodiscard]] std::vector<AbsorbedParameters> keep_determined(
+      const ParameterSearch& linear, std::vector<IdentifyCandidate>& candidates) {
+    const std::vector<int> base = linear.independent(base_);
+    std::vector<AbsorbedParameters> all;
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+      const std::vector<int>& own = whole_[k].columns;
+      const bool in_part = candidates[k].in_part;
+      if (!in_part && own.size() > 1) continue;
+      const std::vector<int> kept = in_part ? linear.determined(base, own) : std::vector<int>{};
+      AbsorbedParameters absorbed{static_cast<int>(k), {}, {}};
+      std::set<std::string> by;
+      for (const int c : own) {
+        if (std::find(kept.begin(), kept.end(), c) != kept.end()) continue;
+        const std::set<std::string> owners = absorbing(linear, base, kept, c);
+        if (!owners.empty()) absorbed.parameters.push_back(index(c));
+        by.insert(owners.begin(), owners.end());
+      }
+      absorbed.by.assign(by.begin(), by.end());
+      if (!by.empty()) all.push_back(std::move(absorbed));
+      if (!in_part) continue;
+      columns_[k].columns = kept;
+      candidates[k].parameters.clear();
+      for (const int c : kept) candidates[k].parameters.push_back(index(c));
+    }
+    return all;
+  }
+
   /// Noise of the first error block at the last solution, and its unit.
   [[nodiscard]] double noise() const { return sigmas_.front(); }
   [[nodiscard]] std::string noise_unit() const { return step_.problem->term(0).options.unit; }
 
   /// True if no chosen parameter has moved farther than robots are wrong.
   [[nodiscard]] bool is_plausible(const std::vector<int>& chosen) const {
-    for (const int k : chosen) {
-      for (const int c : columns_[static_cast<std::size_t>(k)].columns) {
-        const auto p = static_cast<std::size_t>(index(c));
-        const double change = values_[p] - initial_[p];
-        if (!(change <= largest_(c) && change >= smallest_(c))) return false;
-      }
-    }
-    return true;
+    const std::vector<int> all = columns(chosen);
+    return std::all_of(all.begin(), all.end(), [&](int c) {
+      const auto p = static_cast<std::size_t>(index(c));
+      const double change = values_[p] - initial_[p];
+      return change <= largest_(c) && change >= smallest_(c);
+    });
   }
 
   /// Begins with the initial values again, and searches for unknown poses.
@@ -100,7 +147,7 @@ class Identification {
       for (const int c : columns) free.push_back(index(c));
     };
     add(base_);
-    for (const int k : chosen) add(columns_[static_cast<std::size_t>(k)].columns);
+    add(columns(chosen));
     CalibrationResult result;
     result.table = calibration_.table;
     for (int p = 0; p < result.table.size(); ++p) {
@@ -164,6 +211,31 @@ class Identification {
     return all_.parameters()[static_cast<std::size_t>(column)];
   }
 
+  /// The owners of those base columns that explain a column beside others; empty: they do not.
+  /// @param others  columns of the same candidate
+  [[nodiscard]] std::set<std::string> absorbing(const ParameterSearch& linear,
+                                                const std::vector<int>& base,
+                                                const std::vector<int>& others, int column) const {
+    const auto owner = [&](int c) -> const std::string& {
+      return step_.problem->owners()[static_cast<std::size_t>(index(c))];
+    };
+    const auto is_explained = [&](const auto& is_used) {
+      std::vector<int> by = others;
+      std::copy_if(base.begin(), base.end(), std::back_inserter(by), is_used);
+      return linear.explains(by, column);
+    };
+    const auto all = [](int) { return true; };
+    const auto none = [](int) { return false; };
+    if (!is_explained(all) || is_explained(none)) return {};
+    std::set<std::string> owners, needed, enough;
+    for (const int c : base) owners.insert(owner(c));
+    for (const std::string& of : owners) {
+      if (!is_explained([&](int c) { return owner(c) != of; })) needed.insert(of);
+      if (is_explained([&](int c) { return owner(c) == of; })) enough.insert(of);
+    }
+    return !enough.empty() ? enough : !needed.empty() ? needed : owners;
+  }
+
   /// Sets the noise of each error block to what the median residual shows.
   /// @returns  whether one has changed
   bool update_noise() {
@@ -194,7 +266,8 @@ class Identification {
   CalibrationStep& step_;
   FreeSet all_;
   std::vector<UnknownFrame> unknown_;
-  std::vector<SearchCandidate> columns_;
+  std::vector<SearchCandidate> whole_;    ///< with all parameters that residuals depend on
+  std::vector<SearchCandidate> columns_;  ///< with those that are freed
   std::vector<int> base_;
   SearchPoses poses_;
   Eigen::VectorXd largest_, smallest_;  ///< plausible changes, by column

@@ -94,7 +94,21 @@ void find_turns(Identification& search, const Turns& likely, Identified& found) 
           one * step.fit.deviation, step.fit.columns,      step.inseparable};
 }
 
-Identified run(Identification& search, const Turns& likely) {
+/// Linearizes at the solution, where frames lose what the samples do not determine; solves again if one of those found
+/// did.
+[[nodiscard]] ParameterSearch linearize(Identification& search,
+                                        std::vector<IdentifyCandidate>& candidates,
+                                        Identified& found) {
+  ParameterSearch linear = search.linearized();
+  const std::vector<int> before = search.columns(found.chosen);
+  found.absorbed = search.keep_determined(linear, candidates);
+  if (search.columns(found.chosen) == before) return linear;
+  found.result = search.solve(found.chosen);
+  return search.linearized();
+}
+
+Identified run(Identification& search, std::vector<IdentifyCandidate>& candidates,
+               const Turns& likely) {
   constexpr int kLinearizations = 12;
   Identified found;
   found.unit = search.unit();
@@ -102,7 +116,8 @@ Identified run(Identification& search, const Turns& likely) {
   find_turns(search, likely, found);
   std::set<std::set<int>> seen;
   for (int round = 0; round < kLinearizations && found.result.converged; ++round) {
-    const ParameterSearch linear = search.linearized();
+    const ParameterSearch linear = linearize(search, candidates, found);
+    if (!found.result.converged) break;
     const std::vector<int> base = linear.independent(search.base());
     std::vector<int> chosen = found.chosen;
     linear.run(base, search.candidates(), chosen);
@@ -155,8 +170,7 @@ void check_search(const Calibration& calibration, std::span<const Sample> sample
 }  // namespace detail
 
 Identified most_helpful(Calibration& calibration, std::span<const Sample> samples,
-                        const std::vector<int>& base,
-                        const std::vector<IdentifyCandidate>& candidates) {
+                        const std::vector<int>& base, std::vector<IdentifyCandidate>& candidates) {
   detail::check_search(calibration, samples);
   detail::Identification search(calibration, samples, base, candidates);
   constexpr std::size_t kMost = 2;
@@ -166,7 +180,7 @@ Identified most_helpful(Calibration& calibration, std::span<const Sample> sample
   for (;;) {
     found.result = search.solve(found.chosen);
     if (!found.result.converged) return found;
-    const ParameterSearch linear = search.linearized();
+    const ParameterSearch linear = detail::linearize(search, candidates, found);
     const std::vector<int> columns = linear.independent(search.base());
     if (found.chosen.size() < kMost &&
         linear.free_one(columns, search.candidates(), found.chosen, kOfAdvice)) {
@@ -187,11 +201,11 @@ Identified most_helpful(Calibration& calibration, std::span<const Sample> sample
 }
 
 Identified identify(Calibration& calibration, std::span<const Sample> samples,
-                    const std::vector<int>& base, const std::vector<IdentifyCandidate>& candidates,
+                    const std::vector<int>& base, std::vector<IdentifyCandidate>& candidates,
                     const Turns& likely) {
   detail::check_search(calibration, samples);
   detail::Identification search(calibration, samples, base, candidates);
-  return detail::run(search, likely);
+  return detail::run(search, candidates, likely);
 }
 
 }  // namespace kinecal

@@ -21,6 +21,7 @@ struct IdentifyCandidate {
   std::string name;             ///< for people: "elbow_joint", "wrist_joint: z"
   std::vector<int> parameters;  ///< table indices, freed together
   int rank = 0;                 ///< of candidates that explain the same, the lowest is taken
+  bool in_part = false;  ///< freed without what samples do not determine, as the axes of a frame
 };
 
 /// Turns of zeros: candidates, and radians.
@@ -42,6 +43,13 @@ struct IdentifyStep {
       {};  ///< those of `alike` that no sample like these tells from it: either is as good
 };
 
+/// Parameters of a candidate that the base absorbs: these samples do not separate them from it.
+struct AbsorbedParameters {
+  int candidate = -1;
+  std::vector<int> parameters;  ///< table indices
+  std::vector<std::string> by;  ///< joints, frames, sensors or error blocks of the base
+};
+
 /// What was found.
 struct Identified {
   std::vector<int> chosen;  ///< candidates
@@ -49,6 +57,7 @@ struct Identified {
   std::vector<IdentifyStep> steps;  ///< the first one is the base alone
   /// What the next candidates would have bought, if they were freed after these: they were not, because noise explains it.
   std::vector<IdentifyStep> beyond;
+  std::vector<AbsorbedParameters> absorbed;
   CalibrationResult result;  ///< with the chosen parameters free
   std::string unit;          ///< of the errors: that of the error block; "1": there are several
 };
@@ -57,20 +66,22 @@ struct Identified {
 /// steps if it fails.
 /// @param calibration  of one step, whose problem has all parameters, at its solution; it changes
 /// @param base         table indices of the parameters that are free
+/// @param candidates   as of identify()
 /// @throws std::invalid_argument  as identify()
 [[nodiscard]] Identified most_helpful(Calibration& calibration, std::span<const Sample> samples,
                                       const std::vector<int>& base,
-                                      const std::vector<IdentifyCandidate>& candidates);
+                                      std::vector<IdentifyCandidate>& candidates);
 
 /// Searches for the parameters that samples support.
 /// @param calibration  of one step, whose problem has all parameters; its free set, sigmas and values change
 /// @param samples      those of the problem, in their order
 /// @param base         table indices that are always free
+/// @param candidates   lose the parameters that samples do not determine beside the base, if `in_part`
 /// @param likely       turns of zeros that something suggests: tried first if the samples do not fit at the start
 /// @throws std::invalid_argument  if the calibration has not one step, or samples of too few poses
 [[nodiscard]] Identified identify(Calibration& calibration, std::span<const Sample> samples,
                                   const std::vector<int>& base,
-                                  const std::vector<IdentifyCandidate>& candidates,
+                                  std::vector<IdentifyCandidate>& candidates,
                                   const Turns& likely = {});
 
 }  // namespace kinecal

@@ -101,16 +101,36 @@ std::vector<ParameterSearch::Part> ParameterSearch::parts(const std::vector<int>
 std::vector<int> ParameterSearch::independent(const std::vector<int>& columns) const {
   std::vector<int> kept;
   for (const int c : columns) {
-    const Whole whole = whole_fit(kept);
-    double left = squared_(c, c);
-    if (!kept.empty()) {
-      const Eigen::VectorXd cross = squared_(kept, std::vector<int>{c});
-      left -= cross.dot(whole.inverse * cross);
-    }
-    if (left > detail::kOwnShare * squared_(c, c)) kept.push_back(c);
-    if (!whole_fit(kept).determined) kept.pop_back();
+    if (explains(kept, c)) continue;
+    kept.push_back(c);
+    if (detail::scaled_inverse(squared_(kept, kept), scale_(kept)).size() == 0) kept.pop_back();
   }
   return kept;
+}
+
+bool ParameterSearch::explains(const std::vector<int>& columns, int column) const {
+  double left = squared_(column, column);
+  if (!columns.empty()) {
+    const Eigen::VectorXd cross = squared_(columns, std::vector<int>{column});
+    const Eigen::VectorXd solution =
+        detail::scaled_solution(squared_(columns, columns), scale_(columns), cross);
+    if (solution.size() > 0) left -= cross.dot(solution);
+  }
+  return !(left > detail::kOwnShare * squared_(column, column));
+}
+
+std::vector<int> ParameterSearch::determined(const std::vector<int>& base,
+                                             const std::vector<int>& columns) const {
+  std::vector<int> all = independent(detail::joined(base, columns));
+  while (all.size() > base.size()) {
+    const Whole whole = whole_fit(all);
+    const Eigen::VectorXd share = whole.deviation.cwiseQuotient(largest_(all));
+    Eigen::Index weakest = 0;
+    const Eigen::Index own = std::ssize(all) - std::ssize(base);
+    if (share.tail(own).maxCoeff(&weakest) <= kHardly) break;
+    all.erase(all.begin() + std::ssize(base) + weakest);
+  }
+  return {all.begin() + std::ssize(base), all.end()};
 }
 
 ParameterSearch::Whole ParameterSearch::whole_fit(const std::vector<int>& columns) const {
@@ -129,7 +149,6 @@ ParameterSearch::Whole ParameterSearch::whole_fit(const std::vector<int>& column
 }
 
 bool ParameterSearch::is_plausible(const Whole& whole, std::size_t from) const {
-  constexpr double kHardly = 0.3;  // of the plausible change
   for (std::size_t i = from; i < whole.columns.size(); ++i) {
     const double largest = largest_(whole.columns[i]);
     const auto at = static_cast<Eigen::Index>(i);

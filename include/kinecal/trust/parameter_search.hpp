@@ -62,6 +62,13 @@ class ParameterSearch {
 
   /// Columns without those that are combinations of others before them.
   [[nodiscard]] std::vector<int> independent(const std::vector<int>& columns) const;
+  /// Those of some columns that the samples determine beside a base and each other, to a fraction of what is plausible.
+  /// @param base  independent columns
+  [[nodiscard]] std::vector<int> determined(const std::vector<int>& base,
+                                            const std::vector<int>& columns) const;
+  /// True if a column is a combination of others, or zero.
+  /// @param columns  independent
+  [[nodiscard]] bool explains(const std::vector<int>& columns, int column) const;
 
   /// How well a subset predicts.
   /// @param base    columns that are always free, independent
@@ -165,6 +172,8 @@ class ParameterSearch {
                                       const std::vector<int>& chosen, int k) const;
 
   static constexpr double kSure = 1.0;  // standard errors
+  static constexpr double kHardly =
+      0.3;  // deviation of what is hardly determined, of its plausible change
 
   Eigen::MatrixXd jacobian_;            ///< (rows x columns) weighted
   Eigen::VectorXd residual_;            ///< (rows) weighted

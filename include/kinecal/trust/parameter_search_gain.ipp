@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "kinecal/trust/parameter_search.hpp"
@@ -95,8 +97,13 @@ std::vector<ParameterSearch::Gain> ParameterSearch::gains(
     all.push_back(
         gain_of(whole, candidates[static_cast<std::size_t>(k)], k, cross(Eigen::all, own)));
   }
+  constexpr double kSame = 1e-6;  // of the residuals: rounding decides nothing
+  const auto order = [&](const Gain& gain) {
+    return std::pair(-std::round(gain.squares / (kSame * whole.squares)),
+                     candidates[static_cast<std::size_t>(gain.candidate)].rank);
+  };
   std::stable_sort(all.begin(), all.end(),
-                   [](const Gain& a, const Gain& b) { return a.squares > b.squares; });
+                   [&](const Gain& a, const Gain& b) { return order(a) < order(b); });
   return all;
 }
 

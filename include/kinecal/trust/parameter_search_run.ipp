@@ -26,7 +26,9 @@ bool ParameterSearch::helps(const Whole& whole, const Gain& gain, const Candidat
 bool ParameterSearch::free_one(const std::vector<int>& base, const Candidates& candidates,
                                std::vector<int>& chosen, const Evidence& of_all) const {
   constexpr std::size_t kTried = 8;  // of the best, before the search ends
-  const Evidence evidence{of_all.chance / static_cast<double>(candidates.size()), of_all.sure};
+  const auto tried = std::count_if(candidates.begin(), candidates.end(),
+                                   [](const auto& of) { return !of.columns.empty(); });
+  const Evidence evidence{of_all.chance / static_cast<double>(tried), of_all.sure};
   const Whole whole = whole_fit(detail::columns_of(base, candidates, chosen));
   const std::vector<Gain> all = gains(whole, candidates, chosen);
   for (std::size_t i = 0; i < std::min(kTried, all.size()); ++i) {
@@ -132,6 +134,11 @@ void ParameterSearch::run(const std::vector<int>& base, const Candidates& candid
     const std::vector<int> zeros = saturated(base, candidates, chosen, {1, 0});
     const bool far = whole_fit(columns(zeros)).squares < kFar * begin;
     if (far && certainty_of(columns(zeros), columns(chosen)) > kSure) {
+      for (const int k : zeros) {  // a mount alone, if it leaves nothing to the others
+        if (candidates[static_cast<std::size_t>(k)].rank != 1) break;
+        chosen.push_back(k);
+        if (!(certainty_of(columns(zeros), columns(chosen)) > kSure)) return;
+      }
       chosen = zeros;
       return;
     }

@@ -33,14 +33,14 @@ namespace kinecal::detail {
 /// Takes a whole frame in place of several parameters, where that frees no more and poses held out are predicted as
 /// well: how a head or an arm is mounted is one cause, not five.  At a solution with it, as mounts are far off.
 inline void take_whole_frames(Identification& search, Identified& found) {
-  constexpr std::size_t kFrame = 6;  // parameters
+  constexpr int kMount = 1;  // rank
   constexpr double kAsWell = 1.01;
   const auto all = static_cast<int>(search.candidates().size());
   for (int frame = 0; frame < all && found.chosen.size() > 1; ++frame) {
     const bool is_chosen =
         std::find(found.chosen.begin(), found.chosen.end(), frame) != found.chosen.end();
-    if (is_chosen || search.candidates()[static_cast<std::size_t>(frame)].columns.size() < kFrame)
-      continue;
+    const SearchCandidate& mount = search.candidates()[static_cast<std::size_t>(frame)];
+    if (is_chosen || mount.rank != kMount || mount.columns.empty()) continue;
     const auto fit = [&](const ParameterSearch& linear, const std::vector<int>& chosen) {
       SearchFit of = linear.fit_of(linear.independent(search.base()), search.candidates(), chosen);
       of.held_out *= search.distance_of_one();

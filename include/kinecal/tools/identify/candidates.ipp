@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -15,9 +16,9 @@
 
 namespace kinecal::detail {
 
-/// What an engineer names first: zeros, then mounts, sensors, lags, the arm's geometry, then joint models in
-/// the order of joint_models().
-enum IdentifyRank { kZero, kMount, kOfSensor, kLagOfSensor, kGeometry, kJointModel };
+/// What an engineer names first: zeros, then mounts, joints that are rigidly connected with these, sensors, lags, the
+/// arm's geometry, then joint models in the order of joint_models().
+enum IdentifyRank { kZero, kMount, kSameMount, kOfSensor, kLagOfSensor, kGeometry, kJointModel };
 
 /// A model with the chain from the base to its sensor or target.
 struct ModelChain {
@@ -26,12 +27,13 @@ struct ModelChain {
 };
 
 /// The chains of all models that the robot has the links of.
-[[nodiscard]] inline std::vector<ModelChain> model_chains(const Config& config,
-                                                          const Robot& robot) {
+/// @param kept  fixed joints that stay joints of the chains
+[[nodiscard]] inline std::vector<ModelChain> model_chains(const Config& config, const Robot& robot,
+                                                          const std::set<std::string>& kept = {}) {
   std::vector<ModelChain> chains;
   for (const ModelConfig& model : config.steps.front().models) {
     if (!robot.has_link(model.frame) || !robot.has_link(config.base_link)) continue;
-    chains.push_back({&model, make_chain(robot, config.base_link, model.frame)});
+    chains.push_back({&model, make_chain(robot, config.base_link, model.frame, kept)});
   }
   return chains;
 }
@@ -77,6 +79,73 @@ struct ModelChain {
 /// True for a frame that is free from the beginning: it is not in the URDF, or no motor moves it.
 [[nodiscard]] inline bool is_base_frame(const Robot& robot, const FreeFrameConfig& frame) {
   return !frame.is_fixed && (!robot.has_joint(frame.name) || !moves(robot.joint(frame.name).type));
+}
+
+/// True if the URDF has the pose of a joint: an identity is a placeholder.
+[[nodiscard]] inline bool has_origin(const Joint& joint) {
+  return !joint.origin.translation.isZero() || !joint.origin.rotation.isIdentity();
+}
+
+/// A fixed joint before the first or after the last moving joint of a chain: how a robot, a camera or a tool is mounted.
+struct Mount {
+  std::string joint;
+  std::vector<int> ends;  ///< of chains, by number: mounts that are rigidly connected have the same
+};
+
+/// All mounts, from the base to the sensors.
+[[nodiscard]] inline std::vector<Mount> mounts_of(const Config& config, const Robot& robot) {
+  std::set<std::string> fixed;
+  for (const Joint& joint : robot.joints()) {
+    if (joint.type == JointType::fixed) fixed.insert(joint.name);
+  }
+  std::vector<Mount> mounts;
+  int end = 0;
+  const auto add = [&](auto from, auto to) {
+    for (; from != to; ++from) {
+      auto known = std::find_if(mounts.begin(), mounts.end(),
+                                [&](const Mount& of) { return of.joint == from->name; });
+      if (known == mounts.end()) known = mounts.insert(known, {from->name, {}});
+      known->ends.push_back(end);
+    }
+    ++end;
+  };
+  for (const ModelChain& of : model_chains(config, robot, fixed)) {
+    const std::vector<ChainJoint>& joints = of.chain.joints;
+    const auto is_moving = [](const ChainJoint& joint) { return moves(joint.type); };
+    const auto first = std::find_if(joints.begin(), joints.end(), is_moving);
+    add(joints.begin(), first);
+    if (first == joints.end()) continue;
+    add(std::find_if(joints.rbegin(), joints.rend(), is_moving).base(), joints.end());
+  }
+  return mounts;
+}
+
+/// A mount that a configuration does not free.
+struct HeldMount {
+  std::string joint;
+  int rank = kMount;  ///< kSameMount: rigidly connected with another one, as a flange with its tool
+};
+
+/// The mounts that a configuration does not free.  Of those that are rigidly connected, the one that is free has rank
+/// kMount, or the last one with a translation: an optical frame is only turned.
+[[nodiscard]] inline std::vector<HeldMount> held_mounts(const Config& config, const Robot& robot) {
+  const std::vector<FreeFrameConfig>& free = config.steps.front().free_frames;
+  const auto is_free = [&](const std::string& name) {
+    return std::any_of(free.begin(), free.end(), [&](const auto& of) { return of.name == name; });
+  };
+  const std::vector<Mount> mounts = mounts_of(config, robot);
+  std::map<std::vector<int>, std::string> named;  // of each rigid connection
+  for (const Mount& mount : mounts) {
+    std::string& of = named[mount.ends];
+    const bool is_moved = robot.joint(mount.joint).origin.translation.norm() > 0.0;
+    if (of.empty() || is_free(mount.joint) || (is_moved && !is_free(of))) of = mount.joint;
+  }
+  std::vector<HeldMount> held;
+  for (const Mount& mount : mounts) {
+    if (is_free(mount.joint)) continue;
+    held.push_back({mount.joint, named[mount.ends] == mount.joint ? kMount : kSameMount});
+  }
+  return held;
 }
 
 /// Frees one axis of a frame.

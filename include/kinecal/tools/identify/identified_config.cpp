@@ -23,6 +23,9 @@ Config with_all_candidates(const Config& config, const Robot& robot,
     free(joint->name);
     for (std::size_t axis = 0; axis < 6; ++axis) detail::free_axis(step, joint->name, axis);
   }
+  for (const detail::HeldMount& mount : detail::held_mounts(config, robot)) {
+    for (std::size_t axis = 0; axis < 6; ++axis) detail::free_axis(step, mount.joint, axis);
+  }
   for (const detail::ModelCandidate& of_joint : detail::model_candidates(config, robot, samples)) {
     for (const std::string& name : of_joint.parameters) free(name);
   }
@@ -33,40 +36,57 @@ Config with_all_candidates(const Config& config, const Robot& robot,
   return all;
 }
 
+namespace detail {
+namespace {
+
+/// What is free from the beginning: IdentifyTask::base.
+[[nodiscard]] std::vector<int> search_base(const StepConfig& step, const AnyProblem& problem) {
+  std::vector<int> base;
+  for (const FreeFrameConfig& frame : step.free_frames) {
+    if (!is_base_frame(problem.robot(), frame)) continue;
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      const int p = problem.table().find(parameter_name(frame.name, kFrameAxes[axis]));
+      if (frame.axes[axis] && p >= 0) base.push_back(p);
+    }
+  }
+  for (const FreeParamConfig& parameter : step.free_params) {  // those of error blocks
+    const int p = problem.table().find(parameter.name);
+    if (p < 0) continue;
+    const std::string& owner = problem.owners()[static_cast<std::size_t>(p)];
+    const auto is_block = [&](const BlockConfig& block) { return block.name == owner; };
+    if (std::any_of(step.error_blocks.begin(), step.error_blocks.end(), is_block))
+      base.push_back(p);
+  }
+  return base;
+}
+
+}  // namespace
+}  // namespace detail
+
 IdentifyTask identify_task(const Config& config, const AnyProblem& problem,
                            std::span<const Sample> samples, bool geometry_only) {
   const Robot& robot = problem.robot();
   const ParameterTable& table = problem.table();
   const StepConfig& step = config.steps.front();
   IdentifyTask task;
-  std::set<int> taken;
+  task.base = detail::search_base(step, problem);
+  std::set<int> taken(task.base.begin(), task.base.end());
   const auto index = [&](const std::string& name) { return table.find(name); };
-  for (const FreeFrameConfig& frame : step.free_frames) {
-    if (!detail::is_base_frame(robot, frame)) continue;
-    for (std::size_t axis = 0; axis < 6; ++axis) {
-      const int p = index(parameter_name(frame.name, kFrameAxes[axis]));
-      if (frame.axes[axis] && p >= 0) task.base.push_back(p);
-    }
-  }
-  for (const FreeParamConfig& parameter : step.free_params) {  // those of error blocks
-    const int p = index(parameter.name);
-    if (p < 0) continue;
-    const std::string& owner = problem.owners()[static_cast<std::size_t>(p)];
-    const auto is_block = [&](const BlockConfig& block) { return block.name == owner; };
-    if (std::any_of(step.error_blocks.begin(), step.error_blocks.end(), is_block))
-      task.base.push_back(p);
-  }
-  taken.insert(task.base.begin(), task.base.end());
+  const auto add_mount = [&](const std::string& joint, int rank) {
+    IdentifyCandidate& mount = task.candidates.emplace_back();
+    mount.name = "frame of " + joint;
+    mount.rank = rank;
+    mount.in_part = true;
+    for (const auto axis : kFrameAxes)
+      mount.parameters.push_back(index(parameter_name(joint, axis)));
+  };
   for (const FreeFrameConfig& frame : step.free_frames) {  // how a head or an arm is mounted
     const bool whole =
         std::all_of(frame.axes.begin(), frame.axes.end(), [](bool axis) { return axis; });
-    if (detail::is_base_frame(robot, frame) || !whole) continue;
-    IdentifyCandidate& mount = task.candidates.emplace_back();
-    mount.name = "frame of " + frame.name;
-    mount.rank = detail::kMount;
-    for (const auto axis : kFrameAxes)
-      mount.parameters.push_back(index(parameter_name(frame.name, axis)));
+    if (!detail::is_base_frame(robot, frame) && whole) add_mount(frame.name, detail::kMount);
   }
+  for (const detail::HeldMount& mount : detail::held_mounts(config, robot))
+    add_mount(mount.joint, mount.rank);
   const auto add = [&](int rank, const std::string& name, const std::vector<std::string>& parts) {
     IdentifyCandidate candidate{name, {}, rank};
     for (const std::string& part : parts) {
@@ -97,6 +117,14 @@ IdentifyTask identify_task(const Config& config, const AnyProblem& problem,
     add(of_joint.rank, name, of_joint.parameters);
   }
   return task;
+}
+
+std::string candidate_name(const IdentifyCandidate& candidate, const ParameterTable& table) {
+  const std::vector<int>& own = candidate.parameters;
+  if (!candidate.in_part || own.size() == kFrameAxes.size()) return candidate.name;
+  std::string axes;
+  for (const int p : own) axes += " " + table[p].name.substr(table[p].name.rfind('_') + 1);
+  return candidate.name + ":" + axes;
 }
 
 Config identified_config(const Config& config, const IdentifyTask& task, const Identified& found,
@@ -137,9 +165,14 @@ Config identified_config(const Config& config, const IdentifyTask& task, const I
        step.free_frames) {  // poses that were searched for are known now
     const bool is_whole =
         std::all_of(frame.axes.begin(), frame.axes.end(), [](bool a) { return a; });
-    if (frame.is_fixed || found.result.table.size() == 0 ||
-        (problem.robot().has_joint(frame.name) && !is_whole)) {
-      continue;
+    if (frame.is_fixed || found.result.table.size() == 0) continue;
+    if (problem.robot().has_joint(frame.name)) {
+      const std::vector<FreeFrameConfig>& given = config.steps.front().free_frames;
+      const bool was_free = std::any_of(given.begin(), given.end(),
+                                        [&](const auto& of) { return of.name == frame.name; });
+      const bool begins_at_urdf =
+          !was_free && detail::has_origin(problem.robot().joint(frame.name));
+      if (!is_whole || begins_at_urdf) continue;
     }
     Eigen::Matrix<double, 6, 1> pose;
     for (std::size_t axis = 0; axis < 6; ++axis) {

@@ -36,6 +36,10 @@ struct IdentifyTask {
                                          std::span<const Sample> samples,
                                          bool geometry_only = false);
 
+/// "elbow_joint", "frame of tool_joint", or "frame of tool_joint: x y z" of what is freed in part.
+[[nodiscard]] std::string candidate_name(const IdentifyCandidate& candidate,
+                                         const ParameterTable& table);
+
 /// The configuration that frees what was found.
 [[nodiscard]] Config identified_config(const Config& config, const IdentifyTask& task,
                                        const Identified& found, const AnyProblem& problem);

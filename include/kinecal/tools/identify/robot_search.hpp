@@ -19,7 +19,8 @@ namespace kinecal {
 struct RobotSearch {
   IdentifyTask task;
   Identified found;
-  Config config;  ///< that frees what was found
+  Config config;       ///< that frees what was found
+  std::string mounts;  ///< how mounts change that are free from the beginning, a sentence each
 };
 
 /// What a search leaves out.

@@ -3,6 +3,7 @@
 #include "kinecal/tools/identify/tell_apart.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "kinecal/config/assemble.hpp"
@@ -39,6 +40,21 @@ namespace {
                    did_you_mean(name, known));
 }
 
+/// The parameters of a mount that is always free, by the name of its frame or one of them; empty: it is another.
+[[nodiscard]] std::vector<int> mount_in_base(const IdentifyTask& task, const AnyProblem& problem,
+                                             const std::string& name) {
+  const auto owner = [&](int p) { return problem.owners()[static_cast<std::size_t>(p)]; };
+  const auto named = std::find_if(task.base.begin(), task.base.end(), [&](int p) {
+    return problem.robot().has_joint(owner(p)) &&
+           (problem.table()[p].name == name || name == "frame of " + owner(p));
+  });
+  std::vector<int> own;
+  if (named == task.base.end()) return own;
+  std::copy_if(task.base.begin(), task.base.end(), std::back_inserter(own),
+               [&](int p) { return owner(p) == owner(*named); });
+  return own;
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -67,11 +83,13 @@ Explanations free_explanations(const Config& config, const Robot& robot,
       chosen.insert(k);
   }
   for (std::size_t i = 0; i < 2; ++i) {
-    const int k = detail::explanation_of(task, problem.table(), names[i]);
-    chosen.insert(k);
-    for (const int p : task.candidates[static_cast<std::size_t>(k)].parameters) {
-      both.parameters[i].push_back(problem.table()[p].name);
+    std::vector<int> own = detail::mount_in_base(task, problem, names[i]);
+    if (own.empty()) {
+      const int k = detail::explanation_of(task, problem.table(), names[i]);
+      chosen.insert(k);
+      own = task.candidates[static_cast<std::size_t>(k)].parameters;
     }
+    for (const int p : own) both.parameters[i].push_back(problem.table()[p].name);
   }
   for (const std::string& name : both.parameters[0]) {
     const auto& other = both.parameters[1];
