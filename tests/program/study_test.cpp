@@ -101,7 +101,7 @@ TEST_F(Study, WritesAPageWithChartsAndTables) {
 // The prior holds this parameter: what samples say of it is so little that errors of second order count.
 TEST_F(Study, NamesAParameterThatVariesMoreThanPredicted) {
   ASSERT_EQ(run(test::kinecal_program() + " simulate --urdf " + kFetchFolder +
-                "fetch.urdf --scene scene.yaml --poses 15 -o sim")
+                "fetch.urdf --target leds --poses 3 -o sim")
                 .code,
             0);
   std::string config = read("sim/calibrate.yaml");
