@@ -118,6 +118,43 @@ std::string confidence_text(double probability) {
   return fmt::format("confidence {:.{}g} %", 100.0 * (1.0 - probability), digits);
 }
 
+/// True unless a joint would have to slip by more than 30 degrees, or anything by more than 10 cm.
+bool is_shown(const SmallestChange& change) {
+  return change.size < (change.unit == "rad" ? 0.5236 : 0.1);
+}
+
+/// "joints off by 0.012 deg ('lift') to 0.3 deg ('roll')": the smallest changes of joints that turn, of
+/// those that slide, or of frames; empty if there are none.
+std::string visible_text(const Drift& drift, bool is_frame, const std::string& unit) {
+  std::vector<SmallestChange> all = drift.visible;
+  std::erase_if(all, [&](const SmallestChange& change) {
+    return change.is_frame != is_frame || change.unit != unit || !is_shown(change);
+  });
+  if (all.empty()) return "";
+  const auto named = [](const SmallestChange& change) {
+    return fmt::format("{} ('{}')", reading(change.size, change.unit), change.owner);
+  };
+  std::string text = is_frame ? "frames shifted by " : "joints off by ";
+  text += named(all.front());
+  return all.size() > 1 ? text + " to " + named(all.back()) : text;
+}
+
+std::string visible_text(const Drift& drift) {
+  std::string text, hidden;
+  const auto add = [](std::string& to, const std::string& part) {
+    if (!part.empty()) to += (to.empty() ? "" : ", ") + part;
+  };
+  for (const auto& [is_frame, unit] : {std::pair(false, "rad"), {false, "m"}, {true, "m"}}) {
+    add(text, visible_text(drift, is_frame, unit));
+  }
+  for (const SmallestChange& change : drift.visible) {
+    if (!is_shown(change)) add(hidden, "'" + change.owner + "'");
+  }
+  if (!text.empty()) text = "  - would have found, 9 times of 10: " + text + "\n";
+  if (!hidden.empty()) text += "  - would not have found changes of " + hidden + "\n";
+  return text;
+}
+
 std::string verdict_text(const Check& check) {
   const Drift& drift = check.drift;
   std::string text = drift.holds ? "verdict: holds\n" : "verdict: does not hold\n";
@@ -128,6 +165,7 @@ std::string verdict_text(const Check& check) {
     text += fmt::format("  - {} of {} fit: {} (p = {:.2f})\n",
                         check.fresh.samples.size() - drift.missed.size(),
                         counted(check.fresh.samples.size(), "sample"), size, drift.probability);
+    text += visible_text(drift);
   } else {
     text += fmt::format("  - {}: {}\n", confidence_text(drift.probability), size);
   }
@@ -136,6 +174,23 @@ std::string verdict_text(const Check& check) {
   if (check.fresh.samples.size() < kEnough) {
     text += fmt::format("  - only {}; {} or more in different poses show more\n",
                         counted(check.fresh.samples.size(), "sample"), kEnough);
+  }
+  return text;
+}
+
+/// What to record if a change that matters would not have been found; empty otherwise.
+std::string record_text(const Check& check) {
+  double most = 1.0;
+  std::string text;
+  for (const SmallestChange& change : check.drift.visible) {
+    constexpr double kRadians = 0.01745, kMetres = 5e-3;
+    const double useful = change.unit == "rad" ? kRadians : kMetres;
+    if (!is_shown(change) || change.size / useful <= most) continue;
+    most = change.size / useful;
+    text = fmt::format(
+        "Next: verify {:.0f} or more new poses; these would not show {} of {} '{}'\n",
+        std::ceil(static_cast<double>(check.fresh.samples.size()) * most * most),
+        reading(useful, change.unit), change.is_frame ? "frame" : "joint", change.owner);
   }
   return text;
 }
@@ -182,7 +237,10 @@ std::string movers_text(const Check& check) {
 
 std::string next_text(const Check& check) {
   const Drift& drift = check.drift;
-  if (drift.holds) return "Next: nothing to do\n";
+  if (drift.holds) {
+    const std::string record = record_text(check);
+    return record.empty() ? "Next: nothing to do\n" : record;
+  }
   if (drift.movers.empty() || !drift.movers.front().explains) return "Next: calibrate again\n";
   return fmt::format("Next: see whether {} is loose, then calibrate again\n",
                      name_of(check, drift.movers.front()));
@@ -212,7 +270,7 @@ detail::Json json(const Check& check, const Mover& mover, bool alike) {
 std::string json(const Check& check) {
   using detail::Json;
   const Drift& drift = check.drift;
-  Json movers = Json::array(), missed = Json::array();
+  Json movers = Json::array(), missed = Json::array(), visible = Json::array();
   for (const Mover& mover : drift.movers) {
     movers.push_back(json(check, mover, std::ssize(movers) < drift.alike));
   }
@@ -221,6 +279,12 @@ std::string json(const Check& check) {
         {{"sample", sample.sample + 1},
          {"source", check.fresh.samples[static_cast<std::size_t>(sample.sample)].source},
          {"times", sample.times}});
+  }
+  for (const SmallestChange& change : drift.visible) {
+    visible.push_back({{"owner", change.owner},
+                       {"is_frame", change.is_frame},
+                       {"unit", change.unit},
+                       {"size", std::isfinite(change.size) ? Json(change.size) : Json()}});
   }
   return detail::json_lines({{"result", check.result.folder},
                              {"holds", drift.holds},
@@ -232,6 +296,7 @@ std::string json(const Check& check) {
                              {"assumed", check.fresh.assumed},
                              {"bad_samples", missed},
                              {"moved", movers},
+                             {"visible", visible},
                              {"error_blocks", fit_json(check.result, check.fresh)}});
 }
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <random>
+#include <regex>
 #include <sstream>
 
 #include "kinecal/files/samples/write_samples.hpp"
@@ -78,10 +80,44 @@ TEST_F(Recheck, HoldsIfNothingMoved) {
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("Fit: distances"), HasSubstr("Worst samples\n  new.yaml:"),
                     HasSubstr("Next: nothing to do"), Not(HasSubstr("moved"))));
+  EXPECT_THAT(result.out, testing::ContainsRegex("would have found, 9 times of 10: joints off by "
+                                                 "0\\.[0-9]+ deg \\('[a-z]+'\\) to 0\\.[0-9]+ "
+                                                 "deg .*, frames shifted by 0\\.[0-9]+ mm"));
   EXPECT_TRUE(json("v.json")["holds"].as<bool>());
   EXPECT_GT(json("v.json")["probability"].as<double>(), 0.01);
   EXPECT_EQ(json("v.json")["freedom"].as<int>(), 36);
   EXPECT_EQ(json("v.json")["moved"].size(), 0u);
+  const YAML::Node visible = json("v.json")["visible"];
+  ASSERT_GT(visible.size(), 4u);
+  EXPECT_GT(visible[0]["size"].as<double>(), 1e-5);
+}
+
+TEST_F(Recheck, SaysWhatToRecordIfAChangeOfADegreeWouldNotBeFound) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 0.003);
+  for (std::vector<Sample>* samples : {&old_, &new_}) {
+    for (Sample& sample : *samples) {
+      for (Feature& feature : sample.observations[1].features) {
+        for (int k = 0; k < 3; ++k) feature.point(k) += noise(random);
+      }
+    }
+  }
+  calibrate();
+  const Outcome result = with_new("verify");
+  EXPECT_EQ(result.code, 0) << result.out;
+  EXPECT_THAT(result.out, testing::ContainsRegex("Next: verify [0-9]+ or more new poses; these "
+                                                 "would not show 1 deg of joint '[a-z]+'"));
+}
+
+TEST_F(Recheck, ReadsAReportWithoutTheNoiseOfGeometry) {
+  calibrate();
+  std::string text = read("out/report.json");
+  for (const char* key : {"shifts", "turns"}) {
+    text = std::regex_replace(text, std::regex("\\s*\"" + std::string(key) + "\": [^,]*,"), "");
+  }
+  write("out/report.json", text);
+  EXPECT_THAT(text, Not(HasSubstr("\"shifts\"")));
+  EXPECT_EQ(with_new("verify").code, 0);
 }
 
 TEST_F(Recheck, NamesTheJointThatSlipped) {

@@ -7,6 +7,7 @@
 
 #include "kinecal/trust/drift.hpp"
 #include "support/noisy_scene.hpp"
+#include "support/slip_size.hpp"
 
 namespace kinecal::test {
 
@@ -63,7 +64,25 @@ class RepeatedScene {
   /// True value of a parameter, when new samples are recorded.
   [[nodiscard]] double& truth(const std::string& name) { return truth_(result_.table.index(name)); }
   /// Records new samples.
-  void record(unsigned seed) { fresh = recorded(kind_.again, seed); }
+  void record(unsigned seed) {
+    seed_ = seed;
+    fresh = recorded(kind_.again, seed);
+  }
+  /// Names of the joints that are calibrated.
+  [[nodiscard]] static std::vector<std::string> joint_names() {
+    return {"shoulder_lift", "elbow", "wrist", "head_tilt"};
+  }
+  /// Records the new poses again, with a joint that is off by so much more.
+  void slip(const std::string& joint, double by) {
+    truth(joint) += by;
+    record(seed_);
+  }
+  /// How far a slip moves the features of new samples: see slip_size().
+  [[nodiscard]] double size_of(const std::string& joint, double slip) const {
+    const Eigen::VectorXd values = result_.table.values();
+    return slip_size(*problem(fresh), {values.data(), static_cast<std::size_t>(values.size())},
+                     fresh, assessment_.noise[0], joint, slip);
+  }
   [[nodiscard]] const Assessment& assessment() const { return assessment_; }
 
   [[nodiscard]] Drift check(double level) const {
@@ -113,6 +132,7 @@ class RepeatedScene {
   }
 
   SampleKind kind_;
+  unsigned seed_ = 0;  ///< of the new samples
   std::mt19937 random_;
   Eigen::VectorXd truth_;
   std::vector<Sample> old_;

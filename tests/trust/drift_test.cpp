@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/drift_counts.hpp"
 #include "support/noisy_scene.hpp"
 #include "support/repeated_scene.hpp"
 #include "support/repetitions.hpp"
+#include "support/tracked_arm.hpp"
 
 namespace kinecal {
 namespace {
@@ -76,6 +78,62 @@ TEST(Drift, RaisesFalseAlarmsAtTheStatedRateIfFeaturesErrTogether) {
     EXPECT_LE(of_kind, test::binomial_band(runs, 0.05, 1e-3).most) << kind.name;
   }
   EXPECT_LE(alarms, test::binomial_band(all, 0.05, 1e-3).most);
+}
+
+TEST(Drift, OfHalfADegreeIsFoundAndFalseAlarmsAreRareThoughTheModelIsNotExact) {
+  const int runs = test::repetitions(12, 2);
+  test::DriftCounts counts;
+  for (const test::ArmKind& kind : test::kArmKinds) {
+    for (int run = 0; run < runs; ++run) {
+      test::TrackedArm arm(kind, static_cast<unsigned>(run));
+      counts.add(arm);
+    }
+  }
+  EXPECT_LE(counts.alarms.found, test::binomial_band(counts.alarms.of, 0.02, 1e-3).most);
+  const auto& [found, of] = counts.half_degrees;
+  EXPECT_GE(of, 10 * runs);
+  EXPECT_GE(found, test::binomial_band(of, 0.98, 1e-3).least);
+  // What is said to be found 9 times of 10 is found as often, and not always.
+  const auto& [smallest, slips] = counts.smallest;
+  EXPECT_GE(slips, 25 * runs);
+  EXPECT_GE(smallest, test::binomial_band(slips, 0.88, 1e-3).least);
+  EXPECT_LE(smallest, test::binomial_band(slips, 0.95, 1e-3).most);
+}
+
+TEST(Drift, SaysWhichChangesItWouldHaveFound) {
+  Recheck recheck(8);
+  recheck.record(5, 82);
+  const std::vector<SmallestChange> visible = recheck.check().visible;
+  const auto of = [&](const std::string& owner, bool is_frame) {
+    return std::find_if(visible.begin(), visible.end(), [&](const SmallestChange& change) {
+      return change.owner == owner && change.is_frame == is_frame;
+    });
+  };
+  ASSERT_NE(of("elbow", false), visible.end());
+  EXPECT_EQ(of("elbow", false)->unit, "rad");
+  EXPECT_GT(of("elbow", false)->size, 3.0 * recheck.deviation("elbow"));
+  EXPECT_LT(of("elbow", false)->size, 0.01);
+  ASSERT_NE(of("head_pan", true), visible.end());
+  EXPECT_EQ(of("head_pan", true)->unit, "m");
+  EXPECT_TRUE(std::is_sorted(visible.begin(), visible.end(),
+                             [](const auto& a, const auto& b) { return a.size < b.size; }));
+  recheck.value("elbow") += 0.05;
+  recheck.record(5, 83);
+  EXPECT_THAT(recheck.check().visible, IsEmpty()) << "of a calibration that does not hold";
+}
+
+TEST(Drift, WouldNotFindWhatTheCalibrationLeftUndetermined) {
+  Recheck recheck(9);
+  recheck.record(5, 84);
+  const Eigen::VectorXd values = recheck.scene.values();
+  CalibratedState state = calibrated_state(recheck.assessment, recheck.scene.span(values));
+  state.undetermined.push_back({{recheck.scene.result.table.index("elbow"), 1.0}});
+  const auto problem = recheck.scene.problem(recheck.samples);
+  const Drift drift = check_drift(*problem, recheck.samples, state);
+  EXPECT_TRUE(drift.holds);
+  ASSERT_FALSE(drift.visible.empty());
+  EXPECT_EQ(drift.visible.back().owner, "elbow");
+  EXPECT_TRUE(std::isinf(drift.visible.back().size));
 }
 
 TEST(Drift, IsFoundAndNamedWhereFeaturesErrTogether) {

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <random>
 
 #include "kinecal/files/results/result_files.hpp"
 #include "kinecal/trust.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
+#include "support/redrawn.hpp"
 #include "support/repetitions.hpp"
 
 namespace kinecal {
@@ -155,39 +154,14 @@ TEST(RealResults, ASetOf21ParametersOfThePandaCanBeHeldAtTheSameCost) {
   EXPECT_NEAR(cost / front.cost(), 1.0, 1e-9);
 }
 
-/// A calibration of the UR5 with 60 samples of its grid, and six others.
-struct Redrawn {
-  Calibrated calibrated;
-  std::vector<Sample> fresh;
-
-  explicit Redrawn(unsigned seed) {
-    static const auto folder = data_folder() / "ur5_tracker";
-    static const std::vector<Sample> all = samples_of(folder / "grid.yaml");
-    static const Robot robot = read_urdf((folder / "ur5.urdf").string());
-    std::vector<Sample> drawn;
-    std::mt19937 random(seed);
-    std::sample(all.begin(), all.end(), std::back_inserter(drawn), 66, random);
-    std::shuffle(drawn.begin(), drawn.end(), random);
-    fresh.assign(drawn.begin() + 60, drawn.end());
-    drawn.resize(60);
-    calibrated = test::calibrate_samples(robot, folder / "full.yaml", std::move(drawn));
-  }
-  [[nodiscard]] Drift check(double level) const {
-    const Eigen::VectorXd values = calibrated.result.table.values();
-    const auto problem = calibrated.calibration.steps.back().problem->without_samples();
-    for (const Sample& sample : fresh) problem->add_sample(sample);
-    const CalibratedState state = calibrated_state(
-        assessed(calibrated), {values.data(), static_cast<std::size_t>(values.size())});
-    return check_drift(*problem, fresh, state, {level});
-  }
-};
+constexpr const test::RecordingKind& kUr5 = test::kRecordingKinds[0];
 
 TEST(RealResults, HoldForOtherSamplesOfTheSameRecording) {
   KINECAL_NEEDS_DATA("ur5_tracker");
   const int draws = test::repetitions(40, 4);
   int alarms = 0;
   for (int draw = 0; draw < draws; ++draw) {
-    alarms += Redrawn(static_cast<unsigned>(draw)).check(0.05).holds ? 0 : 1;
+    alarms += test::Redrawn(kUr5, static_cast<unsigned>(draw)).check(0.05).holds ? 0 : 1;
   }
   EXPECT_LE(alarms, test::binomial_band(draws, 0.05, 1e-3).most);
 }
@@ -196,7 +170,7 @@ TEST(RealResults, AReflectorBumpedByAMillimetreIsNamedAlongAnyAxis) {
   KINECAL_NEEDS_DATA("ur5_tracker");
   const int draws = test::repetitions(12, 3);
   for (int draw = 0; draw < draws; ++draw) {
-    Redrawn redrawn(static_cast<unsigned>(100 + draw));
+    test::Redrawn redrawn(kUr5, static_cast<unsigned>(100 + draw));
     for (Sample& sample : redrawn.fresh) {
       sample.observations[0].features[0].point(draw % 3) -= 1e-3;  // of the arm's: in the tool
     }

@@ -78,11 +78,8 @@ namespace detail {
 }
 
 [[nodiscard]] inline Json json(const CommonNoise& common) {
-  return {{"separable", common.separable},
-          {"repeats", common.repeats},
-          {"freedom", common.freedom},
-          {"scatter", common.scatter},
-          {"effect", common.effect}};
+  return {{"separable", common.separable}, {"repeats", common.repeats}, {"shifts", common.shifts},
+          {"turns", common.turns},         {"freedom", common.freedom}, {"effect", common.effect}};
 }
 
 [[nodiscard]] inline Json json(const ReadBack& read_back) {

@@ -1,17 +1,22 @@
-// Noise that all features of a pose share: joints stop elsewhere than they say.
+// Noise that all features of a pose share: joints stop elsewhere than they say, and the robot is not
+// quite as its model.
 //
 // With rows in standard deviations of the features' own noise, those of a pose are
 //
-//   r ~ N(0, I + t^2 A A^T)        A: change of r if a joint is off by 1 mrad or 0.2 mm, a column each
+//   r ~ N(0, I + s^2 Q Q^T + w^2 R R^T + t^2 A A^T)
 //
-// What lies outside the columns of A is the features' own noise; along each principal axis u of A A^T, of
-// size l, (u r)^2 / (1 - h) = 1 + t^2 l in the mean, h the leverage, so t^2 is the weighted mean of
-// ((u r)^2 / (1 - h) - 1) / l.  If A spans all rows of each pose, the two cannot be separated.
+// A: change of r if a joint is off by 1 mrad or 0.2 mm, a column each.  Q: axes of a shift of all features of
+// an error block alike.  R: axes of what else the joints can do to r, mostly turns of the target.  t is how far
+// joints stop elsewhere; s and w are geometry that the model lacks, which errs as much where the joints hardly
+// move the features.  What lies outside Q and R is the features' own noise.  If they span all rows of each
+// pose, s and w cannot be separated from it: own noise and t remain.
 //
-// The model is simple, so two figures of the whitened residuals say how far to trust it: how much more
-// the sums of squares of poses scatter than chi-square, and how much larger their gradients are.
-// Source: Searle, Casella, McCulloch, Variance Components, 1992, 5 (weighted analysis of variance);
-// Satterthwaite, An Approximate Distribution of Estimates of Variance Components, 1946.
+// s, w and t reproduce three sums over the calibration's own poses: of squares along Q, of squares along R,
+// and of whitened squares.  The means of these sums are of residuals, not of errors: of (I - P) r with
+// P = J H^-1 J^T.
+//
+// The model is simple, so one figure says how far to trust it: how much larger the gradients of poses are.
+// Source: Searle, Casella, McCulloch, Variance Components, 1992, 5 (analysis of variance).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,12 +27,15 @@ namespace kinecal {
 
 /// What the residuals of a calibration show of noise that features of a pose share.
 struct CommonNoise {
-  bool separable = false;  ///< false: each pose has too few features; nothing below is known
+  bool separable = false;  ///< false: each pose has too few features; s and w are in own noise
   double repeats = 0.0;    ///< t: standard deviation of joints, in mrad and in 0.2 mm
-  double freedom = 0.0;    ///< degrees of freedom of t
-  double scatter =
-      1.0;  ///< variance of the poses' sums of squares over that of chi-square, at least 1
-  double effect = 1.0;  ///< variance of the poses' gradients over that of the model, at least 1
+  double shifts = 0.0;     ///< s: of geometry that shifts features, in those of own noise
+  double turns = 0.0;      ///< w: of geometry that moves them otherwise, in those of own noise
+  double freedom = 0.0;    ///< degrees of freedom of s, w and t
+  double effect = 1.0;     ///< variance of the poses' gradients over that of the model, at least 1
+
+  /// True if features of a pose share noise.
+  [[nodiscard]] bool is_shared() const { return repeats > 0.0 || shifts > 0.0 || turns > 0.0; }
 };
 
 /// Estimates it.

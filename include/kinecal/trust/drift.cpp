@@ -68,9 +68,13 @@ Drift check_drift(const AnyProblem& problem, std::span<const Sample> samples,
               .probability = still.probability,
               .score = still.score(),
               .missed = still.missed,
-              .movers = {}};
+              .movers = {},
+              .visible = {}};
   drift.holds = drift.probability >= options.level;
-  if (drift.holds) return drift;
+  if (drift.holds) {
+    drift.visible = search.smallest_changes(still);
+    return drift;
+  }
   for (Mover mover : search.movers()) {
     detail::try_mover(problem, search, options.level, mover);
     if (mover.freedom >= 1.0) drift.movers.push_back(mover);

@@ -6,18 +6,19 @@
 //   X = r^T (S + J C J^T)^-1 r = min over u of |S^-1/2 r(B u)|^2 + |u|^2      C = B B^T
 //
 // is chi-square with the number of residuals as degrees of freedom.  Features of a pose share the errors
-// of the joints, which are in S (common_noise.hpp); if the calibration could not separate them, all
-// features of a pose count as one.  S and C are estimates, so X / freedom is compared with F, with
-// the fewer degrees of freedom the more the poses of the calibration scatter.  Undetermined directions
-// cost nothing.
+// of the joints and of the model, which are in S (common_noise.hpp); if the calibration could not separate
+// them, all features of a pose count as one.  S and C are estimates, so X / freedom is compared with F.
+// S reproduces the sums of squares of the calibration's poses, so X needs no other correction.
+// Undetermined directions cost nothing.
 // The hypothesis "the elbow has moved" frees its parameters; if it is false, X falls only by
-// chi-square of their number.  Half of the false alarms are for X itself, half for the largest of
+// chi-square of their number, times the effect of S on gradients (common_noise.hpp).  Half of the false alarms are for X itself, half for the largest of
 // these falls.  Hypotheses are compared by X + 2 rank; those that move all features alike are one.
+// If the calibration holds, the same distributions with the mean of a change say which one would have
+// been found: noncentral chi-square, with the squared length of the whitened change.
 // One new sample in five may be a bad capture: it is left out if the others hold without it and it
-// is further off than chance at the level.
+// is further off than chance at the level, unless the slip of one joint explains all samples better.
 // Source: Akaike, A New Look at the Statistical Model
-// Identification, 1974; Welch, The Generalization of Student's Problem, 1947 (freedom of S);
-// Satterthwaite, 1946 (scatter).
+// Identification, 1974; Welch, The Generalization of Student's Problem, 1947 (freedom of S).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -68,6 +69,14 @@ struct Mover {
   std::vector<MissedSample> missed = {};  ///< samples left out for this
 };
 
+/// The smallest change of a joint or frame that is found 9 times of 10.
+struct SmallestChange {
+  std::string owner;      ///< "elbow_flex_joint"
+  bool is_frame = false;  ///< a shift of its frame, along the axis along which it shows least
+  std::string unit;       ///< of its size: "rad" or "m"
+  double size = 0.0;      ///< infinite if these samples do not show it
+};
+
 /// Whether a calibration still holds.
 struct Drift {
   bool holds = true;           ///< X is within chance, at the level of the options
@@ -81,6 +90,8 @@ struct Drift {
   /// How many of the first movers are indistinguishable: scores that differ by less than 6.  The
   /// one with the fewest parameters comes first.
   int alike = 0;
+  /// If the calibration holds: what would have been found in these samples, the smallest first.
+  std::vector<SmallestChange> visible;
 };
 
 /// How to decide.

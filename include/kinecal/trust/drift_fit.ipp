@@ -25,9 +25,8 @@ class DriftFit {
         scale_(scales()) {
     evaluator_ = problem.evaluator(free_, 1);
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(free_.size(), free_.size());
-    std::vector<int> columns;
-    for (const int p : state.parameters) columns.push_back(free_.column(p));
-    covariance(columns, columns) = state.covariance.matrix();
+    const std::vector<int> calibrated = columns(state.parameters);
+    covariance(calibrated, calibrated) = state.covariance.matrix();
     prior_ = root_of(covariance);
     unknown_ = Eigen::MatrixXd::Zero(free_.size(), std::ssize(state.undetermined));
     for (std::size_t c = 0; c < state.undetermined.size(); ++c) {
@@ -42,6 +41,11 @@ class DriftFit {
       const double by = 1.0 / scale_[static_cast<std::size_t>(block.term)];
       effects_.middleRows(block.first, block.size) *= by;
     }
+    std::vector<int> components;
+    for (int t = 0; t < problem.num_terms(); ++t) {
+      components.push_back(problem.term(t).feature_size);
+    }
+    shifts_ = feature_shifts(start_, components);
     start_ = scaled(std::move(start_));
   }
 
@@ -75,10 +79,28 @@ class DriftFit {
     const Reduced system = reduced(from.rows, directions(moved), from.z);
     return {system.slope.dot(system.inverse * system.slope), system.rank - from.rank};
   }
+  /// Columns of some parameters among the free ones.
+  [[nodiscard]] std::vector<int> columns(const std::vector<int>& parameters) const {
+    std::vector<int> all;
+    for (const int p : parameters) all.push_back(free_.column(p));
+    return all;
+  }
+  /// (free x free) J^T V^-1 J: V the variance of the residuals if nothing has moved.
+  /// @param at  minimum with nothing moved
+  [[nodiscard]] Eigen::MatrixXd information(const DriftMinimum& at) const {
+    const LinearFit::RowMajor& j = at.rows.jacobian;
+    const Eigen::MatrixXd known = j.transpose() * (j * directions({}));
+    return j.transpose() * j - known * at.inverse * known.transpose();
+  }
+  /// True if the information on a change of the free parameters is more than rounding.
+  [[nodiscard]] bool shows(double information, const Eigen::VectorXd& change) const {
+    constexpr double kRounding = 1e-9;
+    return information > kRounding * (start_.jacobian * change).squaredNorm();
+  }
   /// Minimizes X by Gauss-Newton steps, from the calibration.
   [[nodiscard]] DriftMinimum minimize(const Eigen::MatrixXd& directions,
                                       const std::vector<bool>& used) const {
-    const Whitening whitening(problem_, start_, poses_, state_.common, effects_, used);
+    const Whitening whitening(problem_, start_, poses_, state_.common, effects_, shifts_, used);
     DriftMinimum at{.z = Eigen::VectorXd::Zero(directions.cols()), .inverse = {}, .rows = start_};
     whitening.apply(at.rows);
     at.statistic = at.rows.residual.squaredNorm();
@@ -92,9 +114,7 @@ class DriftFit {
 
  private:
   [[nodiscard]] Eigen::Index rank_of(const std::vector<int>& parameters) const {
-    std::vector<int> columns;
-    for (const int p : parameters) columns.push_back(free_.column(p));
-    const Eigen::MatrixXd j = start_.jacobian(Eigen::all, columns);
+    const Eigen::MatrixXd j = start_.jacobian(Eigen::all, columns(parameters));
     return j.cols() - Spectrum(j.transpose() * j).null;
   }
   /// The calibrated parameters, and all others that affect these samples.
@@ -188,6 +208,7 @@ class DriftFit {
   Eigen::MatrixXd prior_;    ///< (free x directions) B
   Eigen::MatrixXd unknown_;  ///< (free x directions) undetermined
   Eigen::MatrixXd effects_;  ///< (rows x joints) of joints that stop elsewhere than they say
+  Eigen::MatrixXd shifts_;   ///< (rows x components) of all features of a pose alike
   LinearFit start_;          ///< rows at the calibration
 };
 

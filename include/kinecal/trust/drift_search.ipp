@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -72,6 +73,14 @@ class DriftSearch {
       }
     }
     movers_ = std::move(distinct);
+    for (const Mover& mover : movers_) {
+      std::vector<int> calibrated = mover.parameters;
+      std::erase_if(calibrated, [&](int p) {
+        return std::find(state_.parameters.begin(), state_.parameters.end(), p) ==
+               state_.parameters.end();
+      });
+      if (!calibrated.empty()) tested_.push_back(std::move(calibrated));
+    }
   }
 
   [[nodiscard]] const std::vector<Mover>& movers() const { return movers_; }
@@ -98,43 +107,95 @@ class DriftSearch {
       now = fit();
       now.missed = std::move(missed);
     }
-    return now.probability < level_ ? all : now;
+    if (now.probability < level_) return all;
+    const bool slipped = moved.empty() && all.probability < level_ && slip_is_likelier(all, now);
+    return slipped ? all : now;
+  }
+  /// The smallest changes that would have been found, smallest first: of the offset of each joint, and
+  /// of each frame along the axis along which a shift shows least.
+  [[nodiscard]] std::vector<SmallestChange> smallest_changes(const CleanFit& still) const {
+    std::vector<SmallestChange> all;
+    if (still.freedom < 1.0) return all;
+    const Eigen::MatrixXd information = fit_.information(still.at);
+    for (const Mover& mover : movers_) {
+      std::vector<int> changed = mover.parameters;
+      std::erase_if(changed, [&](int p) {
+        const Parameter& parameter = problem_.table()[p];
+        return mover.is_frame ? parameter.unit != "m" : parameter.name != mover.owner;
+      });
+      if (changed.empty()) continue;
+      const std::vector<int> columns = fit_.columns(changed);
+      const Eigenpairs axes = eigenpairs(Eigen::MatrixXd(information(columns, columns)));
+      Eigen::VectorXd change = Eigen::VectorXd::Zero(information.cols());
+      change(columns) = axes.vectors.col(0);
+      all.push_back({mover.owner, mover.is_frame, problem_.table()[changed.front()].unit,
+                     smallest_times(change, information, still)});
+    }
+    std::stable_sort(all.begin(), all.end(), [](const SmallestChange& a, const SmallestChange& b) {
+      return a.size < b.size;
+    });
+    return all;
   }
 
  private:
+  /// True if the slip of one joint explains all samples, and better than bad captures do.  A frame may
+  /// explain a bad capture: it has six parameters.
+  [[nodiscard]] bool slip_is_likelier(const CleanFit& all, const CleanFit& without) const {
+    return std::any_of(movers_.begin(), movers_.end(), [&](const Mover& mover) {
+      const DriftFall found = fit_.fall(mover.parameters, all.at);
+      const double left = all.at.statistic - found.fall, freedom = all.freedom - 1.0;
+      return found.rank == 1 && all.score() - found.fall + 2.0 < without.score() &&
+             freedom >= 1.0 && f_tail(left / freedom, freedom, all.at.freedom) >= level_;
+    });
+  }
+  /// How many times a change of the free parameters is found with 90 % power, by X or by a mover.
+  /// @param information  see DriftFit
+  [[nodiscard]] double smallest_times(const Eigen::VectorXd& change,
+                                      const Eigen::MatrixXd& information,
+                                      const CleanFit& still) const {
+    constexpr double kPower = 0.9;
+    const Eigen::VectorXd slope = information * change;
+    const double all = change.dot(slope);
+    if (!fit_.shows(all, change)) return std::numeric_limits<double>::infinity();
+    const double b = still.at.freedom;
+    double squares = noncentrality(still.freedom, b, 0.5 * level_, kPower) / all;
+    for (const std::vector<int>& moved : tested_) {
+      const std::vector<int> columns = fit_.columns(moved);
+      const Spectrum spectrum(information(columns, columns));
+      const auto rank = static_cast<double>(std::ssize(moved) - spectrum.null);
+      const Eigen::VectorXd of = slope(columns);
+      const double fall = std::min(all, of.dot(spectrum.pseudo_inverse() * of));
+      if (!(rank >= 1.0 && fall > 0.0)) continue;
+      const double level = 0.5 * level_ / static_cast<double>(tested_.size());
+      squares =
+          std::min(squares, state_.common.effect * noncentrality(rank, b, level, kPower) / fall);
+    }
+    return std::sqrt(squares);
+  }
   [[nodiscard]] CleanFit fit_directions(const Eigen::MatrixXd& directions,
                                         const std::vector<bool>& used) const {
     CleanFit found{fit_.minimize(directions, used), {}};
     found.freedom = found.at.size - static_cast<double>(found.at.rank);
-    if (found.freedom >= 1.0)
-      found.probability = chance(found.at.statistic, found.freedom, found.at);
+    if (found.freedom >= 1.0) {
+      found.probability =
+          f_tail(found.at.statistic / found.freedom, found.freedom, found.at.freedom);
+    }
     return found;
   }
   /// Probability of the result if nothing has moved: half of the level is for X itself, half for
-  /// the fall of X under the best hypothesis (Bonferroni).  A held parameter may have been off when the
-  /// others were calibrated, so that X falls although nothing has moved: it is left to X itself.
+  /// the fall of X under the best hypothesis (Bonferroni).
   [[nodiscard]] double against_movers(const CleanFit& still) const {
-    double least = 1.0, hypotheses = 0.0;
-    for (const Mover& mover : movers_) {
-      std::vector<int> calibrated = mover.parameters;
-      std::erase_if(calibrated, [&](int p) {
-        return std::find(state_.parameters.begin(), state_.parameters.end(), p) ==
-               state_.parameters.end();
-      });
-      if (calibrated.empty()) continue;
-      hypotheses += 1.0;
-      const DriftFall moved = fit_.fall(calibrated, still.at);
-      if (moved.rank < 1) continue;
-      const auto rank = static_cast<double>(moved.rank);
-      const double fall = moved.fall / state_.common.effect;
-      least = std::min(least, f_tail(fall / rank, rank, still.at.freedom / state_.common.scatter));
+    double least = 1.0;
+    for (const std::vector<int>& moved : tested_) {
+      const DriftFall found = fit_.fall(moved, still.at);
+      if (found.rank < 1) continue;
+      const auto rank = static_cast<double>(found.rank);
+      const double fall = found.fall / state_.common.effect;
+      least = std::min(least, f_tail(fall / rank, rank, still.at.freedom));
     }
-    if (hypotheses == 0.0) return still.probability;
+    if (tested_.empty()) return still.probability;
+    const auto hypotheses = static_cast<double>(tested_.size());
     return std::min(1.0, 2.0 * std::min(still.probability, hypotheses * least));
-  }
-  /// Probability that some rows' sum of squares is larger by chance.
-  [[nodiscard]] double chance(double squares, double size, const DriftMinimum& at) const {
-    return f_tail(squares / size, size / state_.common.scatter, at.freedom / state_.common.scatter);
   }
   /// The sample whose removal lowers X most, if it is further off than chance at the level.
   [[nodiscard]] std::optional<MissedSample> worst_sample(const CleanFit& now,
@@ -159,7 +220,7 @@ class DriftSearch {
           Eigen::MatrixXd::Identity(size, size) - j * now.at.inverse * j.transpose();
       const double off = r.dot(Ldlt(variance).solve(r));
       const double mean = off / static_cast<double>(size);
-      const double p = chance(off, static_cast<double>(size), now.at);
+      const double p = f_tail(mean, static_cast<double>(size), now.at.freedom);
       if (!(p < least || (worst && p == least && std::sqrt(mean) > worst->times))) {
         continue;
       }
@@ -173,6 +234,9 @@ class DriftSearch {
   const CalibratedState& state_;
   DriftFit fit_;
   std::vector<Mover> movers_;
+  /// Calibrated parameters of movers.  A held one may have been off when the others were calibrated, so
+  /// that X falls although nothing has moved: it is left to X itself.
+  std::vector<std::vector<int>> tested_;
   double level_;
 };
 

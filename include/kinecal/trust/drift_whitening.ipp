@@ -15,11 +15,11 @@ class Whitening {
  public:
   /// @param fit      rows in standard deviations of the features' own noise, derivatives by parameters
   /// @param effects  (rows x joints) see joint_effects()
+  /// @param shifts   (rows x components) see feature_shifts()
   /// @param used     whether a sample is used; rows of others become zero
   Whitening(const AnyProblem& problem, const LinearFit& fit, const PoseGroups& poses,
             const CommonNoise& common, const Eigen::MatrixXd& effects,
-            const std::vector<bool>& used)
-      : repeats_(common.repeats) {
+            const Eigen::MatrixXd& shifts, const std::vector<bool>& used) {
     for (std::vector<std::size_t>& blocks : blocks_by_pose(fit, poses)) {
       std::erase_if(blocks, [&](std::size_t b) {
         const RowBlock& block = fit.blocks[b];
@@ -36,8 +36,9 @@ class Whitening {
       }
       const double weight = common.separable ? 1.0 : 1.0 / features;
       Pose pose{rows, SharedDirections(std::ssize(rows)), std::sqrt(weight)};
-      if (repeats_ > 0.0) {
-        pose.shared = SharedDirections(effects(rows, Eigen::all));
+      if (common.is_shared()) {
+        pose.shared = SharedDirections(
+            shared_columns(effects(rows, Eigen::all), shifts(rows, Eigen::all), common));
         shared_ += static_cast<double>(pose.shared.sizes.size());
       }
       size_ += weight * static_cast<double>(std::ssize(rows));
@@ -56,8 +57,8 @@ class Whitening {
     for (const Pose& pose : poses_) {
       const Eigen::MatrixXd j = fit.jacobian(pose.rows, Eigen::all);
       const Eigen::VectorXd r = fit.residual(pose.rows);
-      fit.jacobian(pose.rows, Eigen::all) = pose.factor * pose.shared.whitened(j, repeats_);
-      fit.residual(pose.rows) = pose.factor * pose.shared.whitened(r, repeats_);
+      fit.jacobian(pose.rows, Eigen::all) = pose.factor * pose.shared.whitened(j);
+      fit.residual(pose.rows) = pose.factor * pose.shared.whitened(r);
     }
   }
 
@@ -67,7 +68,7 @@ class Whitening {
     SharedDirections shared;
     double factor;
   };
-  double repeats_, size_ = 0.0, shared_ = 0.0;
+  double size_ = 0.0, shared_ = 0.0;
   std::vector<Pose> poses_;
   std::vector<Eigen::Index> unused_;
 };

@@ -4,6 +4,7 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/non_central_chi_squared.hpp>
 #include <cmath>
 
 namespace kinecal {
@@ -42,6 +43,11 @@ double f_exceeded(double a, double b, double probability) {
 double chi_square_exceeded(double freedom, double probability) {
   const boost::math::chi_squared_distribution<double, detail::QuietMath> sum(freedom);
   return quantile(complement(sum, probability));
+}
+
+double noncentrality(double a, double b, double level, double power) {
+  using Sum = boost::math::non_central_chi_squared_distribution<double, detail::QuietMath>;
+  return Sum::find_non_centrality(a, a * f_exceeded(a, b, level), 1.0 - power);
 }
 
 }  // namespace kinecal

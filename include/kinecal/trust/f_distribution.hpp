@@ -22,4 +22,10 @@ namespace kinecal {
 /// @param probability  above 0, below 1
 [[nodiscard]] double chi_square_exceeded(double freedom, double probability);
 
+/// The sum of squares of the means of `a` normal variables of unit variance at which their mean square
+/// exceeds, with probability `power`, the F that chance exceeds with probability `level`.
+/// @param a, b          degrees of freedom, see f_exceeded()
+/// @param level, power  above 0, below 1
+[[nodiscard]] double noncentrality(double a, double b, double level, double power);
+
 }  // namespace kinecal

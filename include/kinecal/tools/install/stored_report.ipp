@@ -63,9 +63,12 @@ inline void read_noise(const JsonValue& report, std::int64_t format, StoredResul
     result.noise.push_back(noise);
   }
   if (const auto common = report.find("common_noise")) {  // older versions did not write it
+    const auto number = [&](const char* key) {
+      return common->find(key) ? common->number(key) : 0.0;
+    };
     result.common = {common->flag("separable"), common->number("repeats"),
-                     common->number("freedom"), common->number("scatter"),
-                     common->number("effect")};
+                     number("shifts"),          number("turns"),
+                     common->number("freedom"), common->number("effect")};
   }
   const bool of_components = format == 1;
   for (const JsonValue& entry : report.list("error_blocks")) {
