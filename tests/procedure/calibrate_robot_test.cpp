@@ -78,7 +78,7 @@ TEST(CalibrateRobot, DoubtsAFrameThatEndsFarFromWhereSomebodySaidItIs) {
   EXPECT_EQ(calibrated("0.6").judgement.verdict, Grade::good);
   const CalibratedRobot far = calibrated("-0.7");
   EXPECT_EQ(far.judgement.verdict, Grade::use_with_care);
-  EXPECT_THAT(far.judgement.reasons.front(), HasSubstr("'tracker_frame_x' changed by 1.4e+03 mm"));
+  EXPECT_THAT(far.judgement.reasons.front(), HasSubstr("'tracker_frame_x' changed by 1.4 m"));
 }
 
 TEST(CalibrateRobot, NamesAFileThatDisagreesWithTheOthers) {
