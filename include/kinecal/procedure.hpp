@@ -7,5 +7,6 @@
 #include "kinecal/procedure/calibrate_robot.hpp"
 #include "kinecal/procedure/calibrated_files.hpp"
 #include "kinecal/procedure/crate_config.hpp"
+#include "kinecal/procedure/judge_read_back.hpp"
 #include "kinecal/procedure/session_end.hpp"
 #include "kinecal/procedure/session_follower.hpp"

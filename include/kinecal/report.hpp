@@ -32,6 +32,7 @@
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/next_step.hpp"
+#include "kinecal/report/read_back.hpp"
 #include "kinecal/report/recorded_poses.hpp"
 #include "kinecal/report/report_data.hpp"
 #include "kinecal/report/reported_search.hpp"
