@@ -9,8 +9,10 @@
 # and the dynamic loader takes the best that the processor has (glibc 2.33; older ones the first).
 # Objects for different levels must not meet in one file: their inline functions have the same names,
 # and the linker would take one of them for all.  The same holds for a static Ceres, which is compiled
-# for the baseline: its shared library is taken instead.  Eigen's matrices cross the border between program
-# and library, and one side frees what the other allocated; so all levels align them as the baseline does.
+# for the baseline: its shared library is taken instead.  What crosses the border between program and
+# library is virtual functions, plain data and matrices of fixed size, which all levels lay out as the baseline does.
+# Eigen's matrices of variable size do not: one side would free what the other has allocated in another way.  The
+# test no_matrix_crosses looks for them.
 # Source: ld.so(8), glibc-hwcaps; x86-64 psABI, micro-architecture levels.
 
 set(KINECAL_LEVELS "")

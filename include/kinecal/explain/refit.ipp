@@ -167,22 +167,17 @@ class Refits {
     std::vector<UnknownFrame> frames = step.unknown_frames;
     std::erase_if(frames, [](const UnknownFrame& frame) { return frame.has_guess; });
     const AnyProblem& few = step.excerpt ? *step.excerpt : *step.problem;
-    Eigen::VectorXd values = other->table.values();
-    for (const auto& [parameter, value] : step.assignments) values(parameter) = value;
-    if (from_ != nullptr) {
-      values = Eigen::Map<const Eigen::VectorXd>(other->begin.data(), values.size());
-    }
+    Eigen::VectorXd at = other->table.values();
+    for (const auto& [parameter, value] : step.assignments) at(parameter) = value;
+    const ParameterValues values(std::span<const double>(
+        from_ != nullptr ? other->begin.data() : at.data(), static_cast<std::size_t>(at.size())));
     constexpr PoseSearch kRoughly{.starts = 12, .rounds = 1, .first = 2, .kept = 3};
-    const FrameFits fits = fit_frames(few, frames, values, 1, kRoughly);
-    if (!fits.minima.empty()) return fits.minima.front().cost;
+    double cost = cost_of_frames(few, frames, values, kRoughly);
+    if (std::isfinite(cost)) return cost;
     constexpr int kRough = 8;  // iterations
-    const auto evaluator = step.problem->evaluator(step.free, 1);
-    Eigen::VectorXd at = values;
-    double cost = fit_roughly(*evaluator, at, kRough);
+    cost = cost_after(*step.problem->evaluator(step.free, 1), values, kRough);
     if (!std::isfinite(cost) && step.excerpt) {  // of lines of sight, which see behind a camera
-      const auto sights = step.excerpt->evaluator(step.free, 1);
-      at = values;
-      cost = fit_roughly(*sights, at, kRough);
+      cost = cost_after(*step.excerpt->evaluator(step.free, 1), values, kRough);
     }
     return std::isfinite(cost) ? std::optional(cost) : std::nullopt;
   }

@@ -79,10 +79,13 @@ struct FrameFits {
                                    const Eigen::VectorXd& values, int threads,
                                    const PoseSearch& search = {});
 
-/// A few iterations with all free parameters of an evaluator.
-/// @param values  in: where to start; out: where it ended
-/// @returns       the cost; infinite if it is not defined there
-[[nodiscard]] double fit_roughly(AnyEvaluator& evaluator, Eigen::VectorXd& values, int iterations);
+/// The lowest cost of fit_frames(); infinite without minima.
+[[nodiscard]] double cost_of_frames(const AnyProblem& excerpt, std::span<const UnknownFrame> frames,
+                                    ParameterValues values, const PoseSearch& search);
+
+/// The cost after a few iterations with all free parameters of an evaluator; infinite if it is not defined.
+/// @param values  of all parameters of the problem's table: where to start
+[[nodiscard]] double cost_after(AnyEvaluator& evaluator, ParameterValues values, int iterations);
 
 }  // namespace detail
 

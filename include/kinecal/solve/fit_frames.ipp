@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <numbers>
 
 #include "kinecal/evaluation/parallel.hpp"
 #include "kinecal/solve/frame_fit.ipp"
 
 namespace kinecal::detail {
+
+[[nodiscard]] inline Eigen::VectorXd vector_of(ParameterValues values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values));
+}
 
 inline constexpr int kGrid = 300;  // rotations of the finest grid
 
@@ -134,11 +139,6 @@ inline void go_on(std::vector<FittedFrames>& fits, int iterations, Evaluators& e
   return fits;
 }
 
-KINECAL_INLINE double fit_roughly(AnyEvaluator& evaluator, Eigen::VectorXd& values,
-                                  int iterations) {
-  return FrameFit(evaluator, {})(values, iterations);
-}
-
 KINECAL_INLINE FrameFits fit_frames(const AnyProblem& excerpt, std::span<const UnknownFrame> frames,
                                     const Eigen::VectorXd& values, int threads,
                                     const PoseSearch& search) {
@@ -162,6 +162,18 @@ KINECAL_INLINE FrameFits fit_frames(const AnyProblem& excerpt, std::span<const U
     if (!all.minima.empty() && all.minima.front().starts >= kOftenEnough) break;
   }
   return all;
+}
+
+KINECAL_INLINE double cost_of_frames(const AnyProblem& excerpt,
+                                     std::span<const UnknownFrame> frames, ParameterValues values,
+                                     const PoseSearch& search) {
+  const FrameFits fits = fit_frames(excerpt, frames, vector_of(values), 1, search);
+  return fits.minima.empty() ? std::numeric_limits<double>::infinity() : fits.minima.front().cost;
+}
+
+KINECAL_INLINE double cost_after(AnyEvaluator& evaluator, ParameterValues values, int iterations) {
+  Eigen::VectorXd at = vector_of(values);
+  return FrameFit(evaluator, {})(at, iterations);
 }
 
 }  // namespace kinecal::detail
