@@ -27,7 +27,7 @@ double mean_of(const test::SampleKind& kind, const Figure& figure) {
 TEST(CommonNoise, IsThatOfTheJointsAndLeavesThatOfTheFeatures) {
   const test::SampleKind kind{"three points", false, 3, 1, 2e-4, 5e-5, 30, 6};
   const auto repeats = [](const Assessment& of) { return of.common.repeats; };
-  EXPECT_NEAR(mean_of(kind, repeats), 0.2, 0.02) << "mrad";
+  EXPECT_NEAR(mean_of(kind, repeats), 0.2, 0.03) << "mrad; found to 8 % each";
   const auto own = [](const Assessment& of) { return of.noise[0].own; };
   EXPECT_NEAR(mean_of(kind, own), 5e-5, 3e-6);
   const auto all = [](const Assessment& of) { return of.noise[0].sigma; };

@@ -48,7 +48,7 @@ TEST(PriorPulls, NameAStrongPriorThatTheSamplesContradict) {
 }
 
 TEST(PriorPulls, AreInTheUncertaintyOfWhatTheyMove) {
-  const WithPrior right = with_prior(1e-3, 0.0), wrong = with_prior(1e-3, 0.02);
+  const WithPrior right = with_prior(1e-4, 0.0), wrong = with_prior(1e-4, 0.03);
   ASSERT_EQ(wrong.pulls().size(), 1u);
   EXPECT_GT(std::abs(wrong.off), 3.0 * right.deviation) << "a believed prior covers less";
   EXPECT_LT(std::abs(wrong.off), 2.0 * wrong.deviation);

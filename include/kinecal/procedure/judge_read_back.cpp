@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "kinecal/config/assemble.hpp"
@@ -66,9 +67,11 @@ struct Zeros {
 /// What a reader of calibrated.urdf finds.
 /// @param problem  of the robot that it describes
 /// @param zeros    the joints whose zeros it finds elsewhere than in origins
+/// @param unread   <calibration rising> in the positions of the samples that it does not read, by joint
 [[nodiscard]] std::vector<BlockError> errors_of_reader(const AnyProblem& problem,
                                                        const Robot& robot,
                                                        const std::set<std::string>& zeros,
+                                                       const std::map<std::string, double>& unread,
                                                        const CalibratedRobot& calibrated) {
   const ParameterTable& result = calibrated.result.table;
   Eigen::VectorXd values = problem.table().values();
@@ -79,6 +82,8 @@ struct Zeros {
     const int found = result.find(name);
     if (!is_read) values(p) = 0.0;  // in the URDF, or lost
     if (is_read && found >= 0) values(p) = result[found].value;
+    const auto rising = unread.find(owner);
+    if (name == owner && rising != unread.end()) values(p) -= rising->second;
   }
   return errors_of(problem, span_of(values));
 }
@@ -140,7 +145,7 @@ struct Zeros {
   const ReaderFit &reader = *read_back.of(read_back.judged), &driver = read_back.fits.front();
   std::string text = "the URDF alone leaves " + errors_text(reader.errors) +
                      ", with calibration.yaml " + errors_text(driver.errors) + ": ";
-  if (read_back.lost.empty()) {
+  if (read_back.judged == Reader::origins || read_back.lost.empty()) {
     return text + "<calibration rising> is not read; write zeros into origins (--offsets origin)";
   }
   const std::size_t others = read_back.lost.size() - 1;
@@ -176,14 +181,19 @@ void judge_read_back(CalibratedRobot& calibrated, const CalibrationOptions& opti
   const CalibrationStep& step = setup.calibration.steps.back();
   const Eigen::VectorXd values = calibrated.result.table.values();
   found.fits.push_back({Reader::driver, detail::errors_of(*step.problem, detail::span_of(values))});
+  std::map<std::string, double> added;  // to the positions of samples
+  if (setup.recorded == Recorded::before) added = rising_of(setup.urdf_text, setup.urdf);
   const auto read_by = [&](Reader reader, const std::set<std::string>& zeros) {
+    const bool reads = reader == Reader::urdf;
     found.fits.push_back(
-        {reader, detail::errors_of_reader(*read.steps.back().problem, robot, zeros, calibrated)});
+        {reader,
+         detail::errors_of_reader(*read.steps.back().problem, robot, zeros,
+                                  reads ? std::map<std::string, double>() : added, calibrated)});
   };
   const detail::Zeros zeros = detail::zeros_of(calibrated, options);
   read_by(Reader::urdf, zeros.all);
   if (!zeros.rising_is_read ||
-      (found.judged == Reader::origins && zeros.all != zeros.without_rising)) {
+      (found.judged == Reader::origins && (zeros.all != zeros.without_rising || !added.empty()))) {
     read_by(Reader::origins, zeros.without_rising);
   }
   if (found.of(found.judged) == nullptr) found.judged = Reader::urdf;

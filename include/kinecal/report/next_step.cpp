@@ -94,10 +94,13 @@ namespace {
 /// What serves the reader of a URDF that cannot hold the result: tried, if it is to hold what is lost.
 [[nodiscard]] std::string serve_reader(const Findings& findings) {
   const ReadBack& read_back = findings.read_back;
-  const bool has_call = !findings.call.command.empty();
-  if (read_back.lost.empty()) {
-    return "write zeros into origins, which all programs read" +
-           (has_call ? ":\n  " + again(findings, {"--offsets", "origin"}) : "");
+  const ShellCommand& command = findings.call.command;
+  const auto with = [&](const std::string& option, const std::string& value) {
+    const bool can_add = !command.empty() && !command.has(option);
+    return can_add ? ":\n  " + again(findings, {option, value}) : "";
+  };
+  if (read_back.judged == Reader::origins || read_back.lost.empty()) {
+    return "write zeros into origins, which all programs read" + with("--offsets", "origin");
   }
   constexpr double kBetter = 1.1;
   const std::vector<BlockError>& now = read_back.of(read_back.judged)->errors;
@@ -111,7 +114,7 @@ namespace {
                                            .str());
   }
   return "apply calibration.yaml in the driver (true_position.hpp), and judge the result for it" +
-         (has_call ? ":\n  " + again(findings, {"--reader", "driver"}) : "");
+         with("--reader", "driver");
 }
 
 }  // namespace
@@ -121,6 +124,9 @@ std::string next_step(const Findings& findings) {
   const Judgement& judgement = findings.judgement;
   const ProgramCall& call = findings.call;
   constexpr double kMuch = 0.5;  // of the error on held-out poses
+  const Remedy remedy = judgement.remedies.empty() ? Remedy{} : judgement.remedies.front();
+  using Kind = Remedy::Kind;
+  if (remedy.kind == Kind::serve) return detail::serve_reader(findings);
   if (judgement.verdict != Grade::good && findings.helps_leave < kMuch) {
     return "find out what else is wrong" + detail::with_inputs("identify", call.inputs);
   }
@@ -133,14 +139,11 @@ std::string next_step(const Findings& findings) {
     return "use " + call.output + "/calibrated.urdf, and verify it with a few new poses:\n  " +
            ShellCommand{"kinecal", "verify", shell_file(call.output), "NEW_SAMPLES"}.str();
   }
-  const Remedy remedy = judgement.remedies.empty() ? Remedy{} : judgement.remedies.front();
-  using Kind = Remedy::Kind;
   if (remedy.kind == Kind::mend) {
     if (!remedy.how.empty()) return remedy.how + ", and calibrate again";
     return std::string(judgement.causes > 1 ? "mend the causes" : "mend the cause") +
            " named under the verdict, and calibrate again";
   }
-  if (remedy.kind == Kind::serve) return detail::serve_reader(findings);
   const std::string held = remedy.kind == Kind::hold ? detail::hold(findings) : "";
   if (!held.empty()) return held;
   const bool is_open =
