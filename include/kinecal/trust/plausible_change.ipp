@@ -61,7 +61,7 @@ struct Limits {
   constexpr double kNever = 1e300, kMeasured = 0.3;  // metres
   const auto is_given = [&](std::string_view axis) {
     const int p = problem.table().find(parameter_name(frame, axis));
-    return p >= 0 && problem.table()[p].initial != 0.0;
+    return p >= 0 && problem.table()[p].value != 0.0;
   };
   const bool is_known =
       of.unit == "m" && std::any_of(kFrameAxes.begin(), kFrameAxes.begin() + 3, is_given);
