@@ -65,22 +65,6 @@ TEST(CalibrateRobot, NamesTheCauseOfABadFit) {
   EXPECT_THAT(calibrated.judgement.reasons.front(), HasSubstr("points of 'tracker'"));
 }
 
-TEST(CalibrateRobot, DoubtsAFrameThatEndsFarFromWhereSomebodySaidItIs) {
-  const auto calibrated = [](const std::string& x) {  // the tracker is at 0.7 -0.4 0.2
-    Diagnostics found;
-    CalibrationSetup setup = arm_setup(30);
-    setup.config = parse_config(
-        test::kArmConfig + "free_frames_initial_values:\n - {name: " + "tracker_frame, x: " + x +
-            ", y: -0.4, z: 0.2, roll: 0.1, " + "pitch: -0.2, yaw: 0.7}\n",
-        "calibrate.yaml", found);
-    return calibrate_robot(std::move(setup));
-  };
-  EXPECT_EQ(calibrated("0.6").judgement.verdict, Grade::good);
-  const CalibratedRobot far = calibrated("-0.7");
-  EXPECT_EQ(far.judgement.verdict, Grade::use_with_care);
-  EXPECT_THAT(far.judgement.reasons.front(), HasSubstr("'tracker_frame_x' changed by 1.4 m"));
-}
-
 TEST(CalibrateRobot, NamesAFileThatDisagreesWithTheOthers) {
   CalibrationSetup setup = arm_setup(60);
   std::mt19937 random(3);

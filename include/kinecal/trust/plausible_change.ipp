@@ -55,20 +55,8 @@ struct Limits {
   });
 }
 
-/// The largest plausible change of a frame that is not in the URDF: somebody measured where it is, or it may be anywhere.
-[[nodiscard]] inline Limits plausible_place(const AnyProblem& problem, const Parameter& of,
-                                            const std::string& frame) {
-  constexpr double kNever = 1e300, kMeasured = 0.3;  // metres
-  const auto is_given = [&](std::string_view axis) {
-    const int p = problem.table().find(parameter_name(frame, axis));
-    return p >= 0 && problem.table()[p].value != 0.0;
-  };
-  const bool is_known =
-      of.unit == "m" && std::any_of(kFrameAxes.begin(), kFrameAxes.begin() + 3, is_given);
-  return {is_known ? kMeasured : kNever, kNever};
-}
-
-/// The largest plausible change of a parameter; the coefficients of a lens may be anything.
+/// The largest plausible change of a parameter; a frame that is not in the URDF may be anywhere, and so may the
+/// coefficients of a lens.
 [[nodiscard]] inline Limits plausible_change(const AnyProblem& problem, int parameter) {
   constexpr double kNever = 1e300, kDegree = std::numbers::pi / 180.0;
   const Parameter& p = problem.table()[parameter];
@@ -86,8 +74,9 @@ struct Limits {
     if (p.unit == "m") return moving ? plausible_length_change(problem, joint) : Limits{0.2, 1.0};
     return moving ? Limits{15.0 * kDegree, 60.0 * kDegree} : Limits{30.0 * kDegree, kNever};
   }
-  if (problem.frames().contains(owner)) return plausible_place(problem, p, owner);
-  if (is_unknown_lens(problem, parameter)) return {kNever, kNever};
+  if (problem.frames().contains(owner) || is_unknown_lens(problem, parameter)) {
+    return {kNever, kNever};
+  }
   if (p.unit == "m") return {0.1, kNever};
   if (p.unit == "s") return {0.2, 1.0};                      // the lag of a sensor
   if (p.name.ends_with("_z_quadratic")) return {0.09, 0.3};  // of depth, at a metre
