@@ -118,6 +118,9 @@ std::string confidence_text(double probability) {
   return fmt::format("confidence {:.{}g} %", 100.0 * (1.0 - probability), digits);
 }
 
+/// Samples below which more are asked for.
+constexpr std::size_t kEnough = 5;
+
 /// True unless a joint would have to slip by more than 30 degrees, or anything by more than 10 cm.
 bool is_shown(const SmallestChange& change) {
   return change.size < (change.unit == "rad" ? 0.5236 : 0.1);
@@ -170,7 +173,6 @@ std::string verdict_text(const Check& check) {
     text += fmt::format("  - {}: {}\n", confidence_text(drift.probability), size);
   }
   text += missed_text(check, drift.missed);
-  constexpr std::size_t kEnough = 5;
   if (check.fresh.samples.size() < kEnough) {
     text += fmt::format("  - only {}; {} or more in different poses show more\n",
                         counted(check.fresh.samples.size(), "sample"), kEnough);
@@ -180,19 +182,29 @@ std::string verdict_text(const Check& check) {
 
 /// What to record if a change that matters would not have been found; empty otherwise.
 std::string record_text(const Check& check) {
+  constexpr double kRadians = 0.01745, kMetres = 5e-3, kManyPoses = 200.0;
+  const SmallestChange* worst = nullptr;
   double most = 1.0;
-  std::string text;
   for (const SmallestChange& change : check.drift.visible) {
-    constexpr double kRadians = 0.01745, kMetres = 5e-3;
-    const double useful = change.unit == "rad" ? kRadians : kMetres;
-    if (!is_shown(change) || change.size / useful <= most) continue;
-    most = change.size / useful;
-    text = fmt::format(
-        "Next: verify {:.0f} or more new poses; these would not show {} of {} '{}'\n",
-        std::ceil(static_cast<double>(check.fresh.samples.size()) * most * most),
-        reading(useful, change.unit), change.is_frame ? "frame" : "joint", change.owner);
+    const double times = change.size / (change.unit == "rad" ? kRadians : kMetres);
+    if (!is_shown(change) || times <= most) continue;
+    most = times;
+    worst = &change;
   }
-  return text;
+  const std::size_t samples = check.fresh.samples.size();
+  if (worst == nullptr) {
+    return samples < kEnough ? fmt::format("Next: verify {} or more new poses\n", kEnough) : "";
+  }
+  const double poses = std::ceil(static_cast<double>(samples) * most * most);
+  const std::string what =
+      fmt::format("{} of {} '{}'", reading(worst->unit == "rad" ? kRadians : kMetres, worst->unit),
+                  worst->is_frame ? "frame" : "joint", worst->owner);
+  if (poses > kManyPoses) {
+    return fmt::format(
+        "Next: measure a point that {} moves farther; poses like these hardly show it\n", what);
+  }
+  return fmt::format("Next: verify {:.0f} or more new poses; these would not show {}\n", poses,
+                     what);
 }
 
 /// What has moved, the most likely first.

@@ -88,16 +88,16 @@ struct Zeros {
   return errors_of(problem, span_of(values));
 }
 
-/// Parameters of joints that are neither zeros nor frames, and not zero.
-[[nodiscard]] std::vector<int> lost_parameters(const AnyProblem& problem, const Robot& robot,
-                                               const ParameterTable& table) {
-  std::vector<int> lost;
+/// Names of parameters of joints that are neither zeros nor frames, and not zero.
+[[nodiscard]] std::vector<std::string> lost_parameters(const AnyProblem& problem,
+                                                       const Robot& robot,
+                                                       const ParameterTable& table) {
+  std::vector<std::string> lost;
   for (int p = 0; p < problem.table().size(); ++p) {
     const std::string& owner = problem.owners()[static_cast<std::size_t>(p)];
-    const std::string& name = problem.table()[p].name;
+    const std::string& name = table[p].name;
     if (!robot.has_joint(owner) || robot.joint(owner).mimic || name == owner) continue;
-    if (is_frame_parameter(name, owner) || table[p].value == 0.0) continue;
-    lost.push_back(p);
+    if (!is_frame_parameter(name, owner) && table[p].value != 0.0) lost.push_back(name);
   }
   return lost;
 }
@@ -156,6 +156,46 @@ struct Zeros {
          "holds (kinecal identify --geometry-only)";
 }
 
+/// Sets what readers find.
+/// @param read  problems of the robot that calibrated.urdf describes
+void set_fits(const CalibratedRobot& calibrated, const Robot& robot, const AnyProblem& read,
+              const CalibrationOptions& options, ReadBack& found) {
+  const PreparedCalibration& setup = calibrated.setup;
+  const AnyProblem& problem = *setup.calibration.steps.back().problem;
+  const Eigen::VectorXd values = calibrated.result.table.values();
+  found.fits.push_back({Reader::driver, errors_of(problem, span_of(values))});
+  std::map<std::string, double> added;  // to the positions of samples
+  if (setup.recorded == Recorded::before) added = rising_of(setup.urdf_text, setup.urdf);
+  const Zeros zeros = zeros_of(calibrated, options);
+  found.fits.push_back({Reader::urdf, errors_of_reader(read, robot, zeros.all, {}, calibrated)});
+  const bool differ = zeros.all != zeros.without_rising || !added.empty();
+  if (!zeros.rising_is_read || (found.judged == Reader::origins && differ)) {
+    found.fits.push_back(
+        {Reader::origins, errors_of_reader(read, robot, zeros.without_rising, added, calibrated)});
+  }
+  if (found.of(found.judged) == nullptr) found.judged = Reader::urdf;
+  found.lost = lost_parameters(problem, setup.robot, calibrated.result.table);
+}
+
+/// Sets what the files of a calibration are worth; leaves it empty if writing them will fail.
+void read_files(const CalibratedRobot& calibrated, const CalibrationOptions& options,
+                ReadBack& found) {
+  try {
+    ResultFileOptions files;
+    files.offsets = options.offsets;
+    files.in_servos = options.in_servos;
+    const Robot robot = parse_urdf(calibrated_urdf(calibrated, files), "calibrated.urdf");
+    Diagnostics diagnostics;
+    const Calibration read =
+        assemble(*calibrated.setup.config, robot, calibrated.samples, diagnostics);
+    if (diagnostics.errors.empty()) {
+      set_fits(calibrated, robot, *read.steps.back().problem, options, found);
+    }
+  } catch (const InputError&) {  // writing says so
+    found.fits.clear();
+  }
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -165,53 +205,17 @@ void judge_read_back(CalibratedRobot& calibrated, const CalibrationOptions& opti
   found = {.judged = options.reader.value_or(Reader::urdf)};
   const bool has_own_poses = !setup.config->per_sample.empty();  // of joints that no URDF has
   if (setup.urdf_text.empty() || has_own_poses || !calibrated.result.converged) return;
-  Diagnostics diagnostics;
-  Robot robot;
-  Calibration read;
-  try {
-    ResultFileOptions files;
-    files.offsets = options.offsets;
-    files.in_servos = options.in_servos;
-    robot = parse_urdf(calibrated_urdf(calibrated, files), "calibrated.urdf");
-    read = assemble(*setup.config, robot, calibrated.samples, diagnostics);
-  } catch (const InputError&) {  // writing the files says so
-    return;
-  }
-  if (!diagnostics.errors.empty()) return;
-  const CalibrationStep& step = setup.calibration.steps.back();
-  const Eigen::VectorXd values = calibrated.result.table.values();
-  found.fits.push_back({Reader::driver, detail::errors_of(*step.problem, detail::span_of(values))});
-  std::map<std::string, double> added;  // to the positions of samples
-  if (setup.recorded == Recorded::before) added = rising_of(setup.urdf_text, setup.urdf);
-  const auto read_by = [&](Reader reader, const std::set<std::string>& zeros) {
-    const bool reads = reader == Reader::urdf;
-    found.fits.push_back(
-        {reader,
-         detail::errors_of_reader(*read.steps.back().problem, robot, zeros,
-                                  reads ? std::map<std::string, double>() : added, calibrated)});
-  };
-  const detail::Zeros zeros = detail::zeros_of(calibrated, options);
-  read_by(Reader::urdf, zeros.all);
-  if (!zeros.rising_is_read ||
-      (found.judged == Reader::origins && (zeros.all != zeros.without_rising || !added.empty()))) {
-    read_by(Reader::origins, zeros.without_rising);
-  }
-  if (found.of(found.judged) == nullptr) found.judged = Reader::urdf;
-  const std::vector<int> lost =
-      detail::lost_parameters(*step.problem, setup.robot, calibrated.result.table);
-  for (const int p : lost) found.lost.push_back(calibrated.result.table[p].name);
-  const ReaderFit& judged = *found.of(found.judged);
-  if (calibrated.assessments.empty()) return;
+  detail::read_files(calibrated, options, found);
+  if (found.fits.empty() || calibrated.assessments.empty()) return;
   constexpr double kWorse = 1.5;
+  const ReaderFit &judged = *found.of(found.judged), &driver = found.fits.front();
   const Assessment& last = calibrated.assessments.back();
-  found.is_worse = times_larger(judged.errors, found.fits.front().errors) > kWorse &&
+  found.is_worse = times_larger(judged.errors, driver.errors) > kWorse &&
                    detail::matter(judged.errors, last.size);
   if (!found.is_worse) return;
-  if (!lost.empty()) {
-    found.geometry_only = detail::fit_of_geometry(calibrated, options);
-  }
-  calibrated.judgement.add(detail::grade_of(last, judged, found.fits.front()),
-                           detail::why_worse(found), {Remedy::Kind::serve});
+  if (!found.lost.empty()) found.geometry_only = detail::fit_of_geometry(calibrated, options);
+  calibrated.judgement.add(detail::grade_of(last, judged, driver), detail::why_worse(found),
+                           {Remedy::Kind::serve});
 }
 
 }  // namespace kinecal

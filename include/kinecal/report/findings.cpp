@@ -48,10 +48,11 @@ namespace detail {
   return note;
 }
 
-/// Priors that the samples contradict.
+/// Priors that disagree with the samples, but are no reason of the verdict.
 [[nodiscard]] inline std::string prior_note(const Assessment& step, const ParameterTable& table) {
   std::string note;
   for (const PriorPull& pull : step.pulls) {
+    if (pull.contradicts()) continue;
     const Parameter& p = table[pull.parameter];
     note += fmt::format(
         "  Prior '{}' shifts '{}' by {}, {:.1f} times what it and the samples allow; +- include "

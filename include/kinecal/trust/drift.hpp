@@ -11,8 +11,9 @@
 // S reproduces the sums of squares of the calibration's poses, so X needs no other correction.
 // Undetermined directions cost nothing.
 // The hypothesis "the elbow has moved" frees its parameters; if it is false, X falls only by
-// chi-square of their number, times the effect of S on gradients (common_noise.hpp).  Half of the false alarms are for X itself, half for the largest of
-// these falls.  Hypotheses are compared by X + 2 rank; those that move all features alike are one.
+// chi-square of their number, times the effect of S on gradients (common_noise.hpp).  Half of the false
+// alarms are for X itself, half for the largest of these falls.  Hypotheses are compared by X + 2 rank;
+// those that move all features alike are one.
 // If the calibration holds, the same distributions with the mean of a change say which one would have
 // been found: noncentral chi-square, with the squared length of the whitened change.
 // One new sample in five may be a bad capture: it is left out if the others hold without it and it

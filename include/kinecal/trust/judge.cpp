@@ -105,9 +105,8 @@ void judge_weak(const Assessment& step, const ParameterTable& table, Judgement& 
 }
 
 void judge_priors(const Assessment& step, const ParameterTable& table, Judgement& judgement) {
-  constexpr double kMost = 4.0;  // below, the +- say it
   for (const PriorPull& pull : step.pulls) {
-    if (!(pull.times > kMost)) continue;
+    if (!pull.contradicts()) continue;
     const Parameter& p = table[pull.parameter];
     judgement.add(Grade::use_with_care,
                   "prior '" + pull.prior + "' contradicts the samples: it shifts '" + p.name +

@@ -56,7 +56,8 @@ enum class Grade { good, use_with_care, do_not_use };
 
 /// What answers a reason.
 struct Remedy {
-  /** What is to be done. */ enum class Kind {
+  /// What is to be done.
+  enum class Kind {
     look,    ///< at residuals
     record,  ///< more poses
     hold,    ///< what samples do not determine or support

@@ -16,26 +16,39 @@ namespace detail {
 namespace {
 
 /// A prior at the solution.
-struct PriorSums {
-  NormalEquations equations;
-  double freedom = 0.0;  ///< k - h
-  double times = 1.0;    ///< variance of its residuals over that of its weights
+struct PriorMisfit {
+  Eigen::MatrixXd hessian;   ///< (free x free)
+  Eigen::VectorXd gradient;  ///< (free) J^T d
+  double chance = 1.0;       ///< of residuals as large
+  double bias = 0.0;         ///< share of d^T d that chance does not explain
 };
 
-[[nodiscard]] PriorSums sums_of(const PriorTerm& prior, const AnyProblem& problem,
-                                const FreeSet& free, ParameterValues values,
-                                const Eigen::MatrixXd& inverse, double variance) {
-  PriorSums sums{NormalEquations(free.size())};
+[[nodiscard]] PriorMisfit misfit_of(const PriorTerm& prior, const AnyProblem& problem,
+                                    const FreeSet& free, ParameterValues values,
+                                    const Eigen::MatrixXd& inverse, double variance) {
+  constexpr double kMany = 1000.0;  // degrees of freedom of the noise
   TermResiduals rows;
   prior.evaluate(problem.table(), values, &free, rows);
-  sums.equations.add_prior(prior, rows, problem.num_samples(), Losses::as_given);
-  const Eigen::MatrixXd& hessian = sums.equations.hessian;
-  const auto rank = static_cast<double>(hessian.cols() - Spectrum(hessian).null);
-  constexpr double kLeast = 0.05;  // of a residual: rounding
-  sums.freedom = rank - inverse.cwiseProduct(hessian).sum();
-  if (!(sums.freedom > kLeast) || !(variance > 0.0)) return sums;
-  sums.times = 2.0 * sums.equations.cost / (variance * sums.freedom);
-  return sums;
+  const double squares = std::pow(prior.options.weight(), 2) * problem.num_samples();
+  const double slope =
+      prior.options.loss(squares / problem.num_samples() * rows.residual.squaredNorm()).derivative;
+  const double weight = std::sqrt(squares * slope);
+  std::vector<Eigen::Index> free_rows;
+  for (Eigen::Index row = 0; row < rows.jacobian.rows(); ++row) {
+    if (!rows.jacobian.row(row).isZero(0.0)) free_rows.push_back(row);
+  }
+  const Eigen::MatrixXd j = weight * rows.jacobian(free_rows, Eigen::all);
+  const Eigen::VectorXd r = weight * rows.residual(free_rows);
+  const Spectrum left(Eigen::MatrixXd::Identity(r.size(), r.size()) - j * inverse * j.transpose());
+  const auto k = static_cast<double>(r.size() - left.null);
+  PriorMisfit of{j.transpose() * j, Eigen::VectorXd::Zero(free.size())};
+  if (k < 1.0 || !(variance > 0.0)) return of;
+  const Eigen::MatrixXd back = left.pseudo_inverse();
+  const Eigen::VectorXd d = back * r;
+  of.gradient = j.transpose() * d;
+  of.chance = f_tail(r.dot(d) / (variance * k), k, kMany);
+  of.bias = std::max(0.0, 1.0 - variance * back.trace() / d.squaredNorm());
+  return of;
 }
 
 }  // namespace
@@ -45,13 +58,13 @@ std::vector<PriorPull> prior_pulls(const AnyProblem& problem, const FreeSet& fre
                                    ParameterValues values, const Eigen::MatrixXd& inverse,
                                    double variance, const Uncertainty& known) {
   constexpr double kMost = 2.0, kChance = 0.01;
-  constexpr double kOfUse = 0.01;   // of useful_deviation(): 0.05 degrees, 0.2 mm, 0.05 %
-  constexpr double kMany = 1000.0;  // degrees of freedom of the noise
+  constexpr double kOfUse = 0.01;  // of useful_deviation(): 0.05 degrees, 0.2 mm, 0.05 %
   std::vector<PriorPull> pulls;
   for (const PriorTerm& prior : problem.priors()) {
-    const detail::PriorSums sums = detail::sums_of(prior, problem, free, values, inverse, variance);
-    if (!(sums.times > 1.0) || f_tail(sums.times, sums.freedom, kMany) > kChance) continue;
-    const Eigen::VectorXd shift = inverse * sums.equations.gradient;
+    const detail::PriorMisfit of =
+        detail::misfit_of(prior, problem, free, values, inverse, variance);
+    if (of.chance > kChance) continue;
+    const Eigen::VectorXd shift = inverse * of.gradient;
     PriorPull pull{.prior = prior.name};
     for (int c = 0; c < free.size(); ++c) {
       const int p = free.parameters()[static_cast<std::size_t>(c)];
@@ -73,8 +86,9 @@ Eigen::MatrixXd prior_scatter(const AnyProblem& problem, const FreeSet& free,
                               double variance) {
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(free.size(), free.size());
   for (const PriorTerm& prior : problem.priors()) {
-    const detail::PriorSums sums = detail::sums_of(prior, problem, free, values, inverse, variance);
-    all += variance * std::max(1.0, sums.times) * sums.equations.hessian;
+    const detail::PriorMisfit of =
+        detail::misfit_of(prior, problem, free, values, inverse, variance);
+    all += variance * of.hessian + of.bias * of.gradient * of.gradient.transpose();
   }
   return all;
 }

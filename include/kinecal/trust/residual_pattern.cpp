@@ -71,7 +71,9 @@ class PatternSearch {
         rounded_ = {.owner = name, .course = ErrorCourse::rounding, .size = step};
         rounded_.turns = track.turns;
       }
+      const bool is_free = fitted_.free.column(fitted_.problem.table().find(name)) >= 0;
       for (const ErrorCourse course : kJointCourses) {
+        if (course == ErrorCourse::zero && is_free) continue;  // only a prior holds it
         const Eigen::MatrixXd u = course_of(course, track);
         if (u.cols() == 0) continue;
         const Fall fall = columns.fall(u, inverse_);

@@ -4,7 +4,7 @@
 //
 // with P the priors, s_b the weighted noise of error block b, and s = 1 if all blocks have a sigma,
 // else that of all blocks: without sigmas, weights are only ratios.  One common s gives s^2 H^-1.
-// The variance of a prior that the samples contradict is larger (prior_pulls.hpp).
+// What a prior shifts that the samples contradict is in V, too (prior_pulls.hpp).
 // With robust losses it is the sandwich of M-estimators: A^-1 B A^-1 with A the Hessian including
 // rho'', B the sum of g g^T over features, g their gradients.  Both assume that features err
 // independently; V and B are replaced as far as those of a pose do not (gradient_variance.hpp).
