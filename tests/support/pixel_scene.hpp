@@ -103,10 +103,10 @@ struct PixelScene {
     calibration.steps.push_back({"calibrate", 1000, std::move(filled), free_set(), {}});
     return calibrate_and_judge(calibration, all);
   }
-  [[nodiscard]] std::optional<LensPattern> found() const {
+  [[nodiscard]] std::optional<SystematicError> found() const {
     const JudgedResult of = judged();
     EXPECT_FALSE(of.assessments.empty());
-    return of.assessments.empty() ? std::nullopt : of.assessments.back().lens;
+    return of.assessments.empty() ? std::nullopt : of.assessments.back().systematic;
   }
 };
 

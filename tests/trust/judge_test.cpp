@@ -116,15 +116,16 @@ TEST(Judge, ExpectsSmallerResidualsOfASmallRobot) {
   }
 }
 
-TEST(Judge, NamesAJointThatExplainsTheResiduals) {
+TEST(Judge, NamesWhatExplainsTheResiduals) {
   Judged judged;
-  judged.assessments[0].pattern = ResidualPattern{
-      .owner = "elbow", .course = ErrorCourse::backlash, .size = 0.0175, .noise_left = 0.4};
+  SystematicError& error = judged.assessments[0].systematic.emplace(
+      SystematicError{.owner = "elbow", .course = ErrorCourse::backlash, .noise_left = 0.4});
+  error.text = "with a backlash of 'elbow' of 1 deg";
+  error.advice = "the model does not contain that";
   expect(judged.judgement(), Grade::use_with_care,
-         "with a backlash of 'elbow' of 1 deg, the noise falls to 40 %");
-  judged.assessments[0].change = RecordingChange{
-      .owner = "stand", .sample = 12, .noise_left = 0.3, .metres = 0.05, .radians = 0.0};
-  expect(judged.judgement(), Grade::do_not_use, "'stand' seems to have changed");
+         "with a backlash of 'elbow' of 1 deg, the noise falls to 40 %; the model does not");
+  error.refuse = true;
+  expect(judged.judgement(), Grade::do_not_use, "with a backlash");
 }
 
 TEST(Judge, NamesASigmaInAnotherUnit) {
@@ -135,23 +136,6 @@ TEST(Judge, NamesASigmaInAnotherUnit) {
   EXPECT_THAT(judged.judgement().reasons.front(), HasSubstr("sigma must be in metres"));
   judged.noise().given = 0.04;  // too large, but it may be meant
   expect(judged.judgement(), Grade::good, "");
-}
-
-TEST(Judge, NamesWhatChangedOrDriftedWithItsSize) {
-  Judged judged;
-  judged.assessments[0].change = RecordingChange{.owner = "stand",
-                                                 .sample = 12,
-                                                 .noise_left = 0.4,
-                                                 .drifts = true,
-                                                 .metres = 0.0113,
-                                                 .radians = 0.01};
-  expect(judged.judgement(), Grade::use_with_care,
-         "'stand' drifts by 11.3 mm and 0.573 deg from the first sample to the last: with an even "
-         "drift, the noise falls to 40 %");
-  judged.assessments[0].change = RecordingChange{
-      .owner = "stand", .sample = 12, .noise_left = 0.2, .metres = 0.05, .radians = 6e-15};
-  expect(judged.judgement(), Grade::do_not_use,
-         "'stand' seems to have changed by 50 mm during the recording, before ");
 }
 
 TEST(Judge, NamesPriorsThatTheSamplesContradict) {

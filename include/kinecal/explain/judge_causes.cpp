@@ -72,6 +72,9 @@ void judge_fit(const CalibrationInput& input, std::span<const Sample> all,
                                       {.own = own, .combines = is_bad || has_bad, .solve = {}});
   if (!found.cause.empty()) {
     const bool refuse = is_bad || found.left < kThird;
+    if (is_solved && judged.assessments.back().systematic) {  // of residuals that the mistake made
+      judged.judgement.take_back_cause(sentence(*judged.assessments.back().systematic));
+    }
     judged.judgement.add_causes(refuse ? Grade::do_not_use : Grade::use_with_care,
                                 {"likely cause: " + found.cause});
     return;
@@ -101,7 +104,9 @@ void judge_causes(const CalibrationInput& input, std::span<const Sample> all, Ju
 void judge_scales(const CalibrationInput& input, JudgedResult& judged) {
   if (!judged.result.converged || judged.assessments.empty()) return;
   const Assessment& last = judged.assessments.back();
-  if (fits_badly(last) || last.change) return;  // lengths have absorbed a change, too
+  if (fits_badly(last)) return;
+  if (last.systematic && is_change(last.systematic->course))
+    return;  // lengths have absorbed it, too
   std::vector<std::string> scales =
       wrong_scales(input.config, input.robot, input.samples, judged.result.table, last);
   for (std::string& scale : scales) scale += "; are its lengths right?";

@@ -56,9 +56,7 @@ namespace {
 
 /// What is left of the noise by what is named already.
 [[nodiscard]] double known_to_leave(const Assessment& step) {
-  return std::min({step.change ? step.change->noise_left : 1.0,
-                   step.pattern ? step.pattern->noise_left : 1.0,
-                   step.lens ? step.lens->noise_left : 1.0});
+  return step.systematic ? step.systematic->noise_left : 1.0;
 }
 
 }  // namespace

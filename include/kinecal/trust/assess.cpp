@@ -148,10 +148,8 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.weak = weak_parameters(problem, inside, found.uncertainty);
   found.captures = capture_errors(problem, fit, single);
   found.noise_without_bad = noise_without_bad(fit, found.captures);
-  found.change = recording_change(problem, inside, fit, poses);
-  if (found.change) found.change->by_pose = follows_poses(problem, *found.change, samples);
-  found.pattern = residual_pattern(problem, inside, fit, values, samples, poses, effects);
-  found.lens = lens_pattern(problem, inside, fit, values, samples, poses);
+  found.systematic = systematic_error({problem, inside, fit, values, samples}, poses, effects,
+                                      found.noise, found.common);
   found.folded = folded_lenses(problem, free, values, samples);
   found.maps =
       projection_maps({*evaluator, inside, values, fit, found.uncertainty, samples, poses});

@@ -14,14 +14,12 @@
 #include "kinecal/trust/common_noise.hpp"
 #include "kinecal/trust/folded_lens.hpp"
 #include "kinecal/trust/held_out.hpp"
-#include "kinecal/trust/lens_pattern.hpp"
 #include "kinecal/trust/neighbours.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
 #include "kinecal/trust/prior_pulls.hpp"
 #include "kinecal/trust/projection_map.hpp"
-#include "kinecal/trust/recording_change.hpp"
-#include "kinecal/trust/residual_pattern.hpp"
+#include "kinecal/trust/systematic_error.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
 
 namespace kinecal {
@@ -47,15 +45,13 @@ struct Assessment {
   std::vector<HeldOutError> held_out;  ///< of each error block; empty if there are too few samples
   std::vector<CaptureError> captures;  ///< of each sample
   double noise_without_bad = 1.0;      ///< ratio to that of all samples
-  std::optional<RecordingChange> change;   ///< during the recording
-  std::optional<ResidualPattern> pattern;  ///< that the model does not contain
-  std::optional<LensPattern> lens;         ///< a camera's lens that is not as it was taken
-  std::vector<FoldedLens> folded;          ///< lenses that fold over inside the image
-  std::vector<ProjectionMap> maps;         ///< of cameras of which something is free
-  std::vector<AlikePixels> alike;          ///< of the same cameras
-  std::vector<IdleGroup> idle;             ///< whose parameters improve nothing
-  std::vector<PriorPull> pulls;            ///< priors that the samples contradict
-  std::optional<PoseUncertainty> pose;     ///< of the frames that the first error block compares
+  std::optional<SystematicError> systematic;  ///< what explains the residuals best
+  std::vector<FoldedLens> folded;             ///< lenses that fold over inside the image
+  std::vector<ProjectionMap> maps;            ///< of cameras of which something is free
+  std::vector<AlikePixels> alike;             ///< of the same cameras
+  std::vector<IdleGroup> idle;                ///< whose parameters improve nothing
+  std::vector<PriorPull> pulls;               ///< priors that the samples contradict
+  std::optional<PoseUncertainty> pose;        ///< of the frames that the first error block compares
   double elsewhere = 0.0;    ///< +- of that position over the limits of the joints, median, metres
   std::int64_t rows = 0;     ///< residuals, without priors
   double used = 0.0;         ///< of these, by poses that samples have of their own

@@ -11,7 +11,7 @@
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/samples/joint_moves.hpp"
-#include "kinecal/trust/residual_pattern.hpp"
+#include "kinecal/trust/systematic_error.hpp"
 
 namespace kinecal::detail {
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/trust/judge_change.ipp"
 #include "kinecal/trust/judge_lens.ipp"
 #include "kinecal/trust/judge_noise.ipp"
 #include "kinecal/trust/judge_places.ipp"
@@ -181,8 +180,10 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
                     {Remedy::Kind::record});
     }
     if (last) detail::judge_captures(assessments[s], *step.problem, judgement);
-    if (last && !detail::judge_lens(assessments[s], judgement)) {
-      detail::judge_change(assessments[s], *step.problem, judgement);
+    if (last && assessments[s].systematic) {
+      const SystematicError& error = *assessments[s].systematic;
+      judgement.add_causes(error.refuse ? Grade::do_not_use : Grade::use_with_care,
+                           {sentence(error)});
     }
     detail::judge_values(step, result, assessments[s], judgement);
     if (last) detail::judge_places(*step.problem, assessments[s], result.table, judgement);

@@ -12,7 +12,7 @@
 //   a quarter of the samples does not fit,              a tenth
 //   left out or not
 //   something changed or drifted during the recording:  three quarters; also with a pattern of
-//   with that, the noise falls to a third               residuals, such as a joint's gear
+//   with that, the noise falls to a third               residuals, such as of a joint's gear
 //   a joint's offset of 45 degrees                      15 degrees
 //   an intrinsic changed by 30 %                        9 %
 //   the frame of a joint that moves: 0.3 m, 60 degrees  15 % of its link or 3 % of the robot, at most 5 cm;
@@ -22,7 +22,7 @@
 //                                                       a parameter ended at a bound
 //                                                       a parameter known to 5 degrees, 20 mm, 5 %
 //                                                       or 20 px only
-//                                                       a prior that moves a parameter by 4
+//                                                       a prior that moves a parameter by 8
 //                                                       standard deviations
 //                                                       residuals of a camera that grow with the
 //                                                       distance from the center: its lens
@@ -36,6 +36,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -88,6 +89,15 @@ struct Judgement {
     causes += static_cast<int>(found.size());
     remedies.insert(remedies.begin(), found.size(), Remedy{Remedy::Kind::mend});
     if (!found.empty() && grade > verdict) verdict = grade;
+  }
+  /// Takes a cause back that another one explains; the verdict stays.
+  void take_back_cause(const std::string& cause) {
+    const auto end = reasons.begin() + causes;
+    const auto at = std::find(reasons.begin(), end, cause);
+    if (at == end) return;
+    remedies.erase(remedies.begin() + (at - reasons.begin()));
+    reasons.erase(at);
+    --causes;
   }
 };
 

@@ -1,4 +1,4 @@
-// Judging lenses that are not as they were taken.
+// Judging lenses.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,34 +10,6 @@
 #include "kinecal/trust/judge.hpp"
 
 namespace kinecal::detail {
-
-/// Why a lens is not as it was taken, and what to do.
-[[nodiscard]] inline std::string mended_lens(TakenLens taken) {
-  switch (taken) {
-    case TakenLens::none:
-      break;
-    case TakenLens::given:
-      return "the distortion in camera_info is not that of its lens at this resolution and focus; "
-             "free its coefficients, or calibrate the lens again";
-    case TakenLens::rectified:
-      return "its images are taken as rectified, but show the distortion of a lens; write 'image: "
-             "raw' if they are "
-             "raw, or calibrate the lens again";
-  }
-  return "its lens is distorted, but camera_info has no distortion; free its coefficients (k1, "
-         "k2, p1, p2), or give them (D of camera_info, with 'image: raw')";
-}
-
-/// "residuals of 'camera' grow with the distance from the center of the image (+3.1 px at 900 px): ..."
-[[nodiscard]] inline std::string lens_text(const LensPattern& lens) {
-  char numbers[64], k1[32];
-  (void)std::snprintf(numbers, sizeof numbers, "(%+.1f px at %.0f px)", lens.pixels, lens.radius);
-  (void)std::snprintf(k1, sizeof k1, "%.2g", lens.k1);
-  return "residuals of '" + lens.sensor + "' grow with the distance from the center of the image " +
-         numbers + ": " + mended_lens(lens.taken) + "; with a k1 " +
-         (lens.taken == TakenLens::given ? "that differs by " : "of ") + k1 +
-         ", the noise falls to " + reading(1e2 * lens.noise_left, "1") + " %";
-}
 
 /// A lens that folds over where features are is no result; beyond them it is one for the places where features are.
 inline void judge_folds(const Assessment& step, Judgement& judgement) {
@@ -117,19 +89,6 @@ inline void judge_projection(const Assessment& step, Judgement& judgement) {
                     {Remedy::Kind::mend});
     }
   }
-}
-
-/// The share of the noise that a pattern or a change leaves; 1 if there is none.
-[[nodiscard]] inline double left_by_others(const Assessment& step) {
-  return std::min(step.pattern ? step.pattern->noise_left : 1.0,
-                  step.change ? step.change->noise_left : 1.0);
-}
-
-/// A lens that explains more than a pattern or a change: these are parts of its effect then.
-[[nodiscard]] inline bool judge_lens(const Assessment& step, Judgement& judgement) {
-  if (!step.lens || step.lens->noise_left > left_by_others(step)) return false;
-  judgement.add_causes(Grade::use_with_care, {lens_text(*step.lens)});
-  return true;
 }
 
 }  // namespace kinecal::detail

@@ -24,10 +24,7 @@ double noise_without_bad(const LinearFit& fit, const std::vector<CaptureError>& 
 }
 
 bool explains_more(const Assessment& last) {
-  const double left = last.noise_without_bad;
-  return (last.change && last.change->noise_left <= left) ||
-         (last.pattern && last.pattern->noise_left <= left) ||
-         (last.lens && last.lens->noise_left <= left);
+  return last.systematic && last.systematic->noise_left <= last.noise_without_bad;
 }
 
 std::vector<CaptureError> ruined_captures(const Assessment& last) {

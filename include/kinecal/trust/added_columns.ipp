@@ -14,13 +14,6 @@
 
 namespace kinecal::detail {
 
-/// Sums over the rows of a fit (J, r, loss W) and added columns X.
-struct AddedColumns {
-  Eigen::MatrixXd squared;   ///< (added x added) X^T W X
-  Eigen::MatrixXd cross;     ///< (added x coordinates) X^T W J
-  Eigen::VectorXd gradient;  ///< (added) X^T W r
-};
-
 /// What added columns explain.
 struct Fall {
   double squares = 0.0;    ///< by which the sum of squares falls
@@ -28,32 +21,50 @@ struct Fall {
   Eigen::VectorXd others;  ///< (coordinates) by which the model's own parameters move then
 };
 
-/// One over the length of each added column; zero for a column of zeros.
-[[nodiscard]] inline Eigen::VectorXd unit_lengths(const AddedColumns& added) {
-  return added.squared.diagonal().unaryExpr(
-      [](double a) { return a > 0.0 ? 1.0 / std::sqrt(a) : 0.0; });
-}
-
-/// Skips combinations of added columns that the model's own parameters explain just as well.
-/// @param scale    (added) one over the length of each column; zero: skipped
-/// @param inverse  of J^T W J
-[[nodiscard]] inline Fall fall_of(const AddedColumns& added, const Eigen::VectorXd& scale,
-                                  const Eigen::MatrixXd& inverse) {
-  constexpr double kOwn = 1e-3;  // least share of a column's effect that others cannot explain
-  const Eigenpairs own = eigenpairs(
-      scale.asDiagonal() * (added.squared - added.cross * inverse * added.cross.transpose()) *
-      scale.asDiagonal());
-  const Eigen::VectorXd gradient = own.vectors.transpose() * scale.cwiseProduct(added.gradient);
-  Fall fall{0.0, Eigen::VectorXd::Zero(gradient.size()), {}};
-  for (Eigen::Index i = 0; i < gradient.size(); ++i) {
-    const double value = own.values(i);
-    if (value <= kOwn) continue;
-    fall.squares += gradient(i) * gradient(i) / value;
-    fall.change -= scale.cwiseProduct(own.vectors.col(i)) * (gradient(i) / value);
+/// Columns X beside those of a fit (J, loss W).
+class AddedColumns {
+ public:
+  /// Skips combinations of columns that the model's own parameters explain just as well.
+  /// @param squared  (added x added) X^T W X
+  /// @param cross    (added x coordinates) X^T W J
+  /// @param scale    (added) one over the length of each column; zero: skipped
+  /// @param inverse  of J^T W J
+  AddedColumns(const Eigen::MatrixXd& squared, const Eigen::MatrixXd& cross,
+               const Eigen::VectorXd& scale, const Eigen::MatrixXd& inverse)
+      : others_(-inverse * cross.transpose()) {
+    constexpr double kOwn = 1e-3;  // least share of a column's effect that others cannot explain
+    const Eigenpairs own =
+        eigenpairs(scale.asDiagonal() * (squared + cross * others_) * scale.asDiagonal());
+    const Eigen::Index kept = (own.values.array() > kOwn).count();  // the last ones: they ascend
+    units_ = own.values.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal() *
+             own.vectors.rightCols(kept).transpose() * scale.asDiagonal();
   }
-  fall.others = -inverse * (added.cross.transpose() * fall.change);
-  return fall;
-}
+  /// Each column in units of its own length.
+  AddedColumns(const Eigen::MatrixXd& squared, const Eigen::MatrixXd& cross,
+               const Eigen::MatrixXd& inverse)
+      : AddedColumns(squared, cross, unit_lengths(squared), inverse) {}
+
+  [[nodiscard]] int count() const { return static_cast<int>(others_.cols()); }
+  /// By which the sum of squares of residuals r falls.
+  /// @param gradient  (added) X^T W r
+  [[nodiscard]] double squares(const Eigen::VectorXd& gradient) const {
+    return (units_ * gradient).squaredNorm();
+  }
+  [[nodiscard]] Fall fall(const Eigen::VectorXd& gradient) const {
+    const Eigen::VectorXd along = units_ * gradient;
+    const Eigen::VectorXd change = -units_.transpose() * along;
+    return {along.squaredNorm(), change, others_ * change};
+  }
+
+ private:
+  [[nodiscard]] static Eigen::VectorXd unit_lengths(const Eigen::MatrixXd& squared) {
+    return squared.diagonal().unaryExpr(
+        [](double a) { return a > 0.0 ? 1.0 / std::sqrt(a) : 0.0; });
+  }
+
+  Eigen::MatrixXd others_;  ///< (coordinates x added)
+  Eigen::MatrixXd units_;   ///< (combinations x added): of their unit lengths
+};
 
 /// True if added columns move the model's own parameters farther than robots are wrong.  The samples then
 /// have so little in common that anything fits, and the fall is no evidence.

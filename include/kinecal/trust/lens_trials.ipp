@@ -1,0 +1,198 @@
+// Lenses that are not as they were taken.
+//
+// Let the pixels be farther from the principal point c than they were measured, by
+//
+//   a (p - c) |p - c|^2 / R^3      R the distance of the farthest feature: a pixels there
+//
+// which is the first term of a lens, k1 = a f^2 / R^3.  A wrong focal length or principal point that is held looks alike:
+// the evidence is what is left of a beside these.  A lens of which a coefficient is free fits as well as its model can.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "kinecal/trust/left_out_poses.ipp"
+#include "kinecal/trust/systematic_trial.ipp"
+
+namespace kinecal::detail {
+
+/// A shift of pixels, by their place in units of the radius.
+using Shift = Eigen::Vector2d (*)(const Eigen::Vector2d&);
+
+[[nodiscard]] inline Eigen::Vector2d lens_shift(const Eigen::Vector2d& p) {
+  return p * p.squaredNorm();
+}
+/// What looks alike: the scales of u and v, and their shifts.
+inline constexpr std::array<Shift, 4> kOtherShifts = {
+    [](const Eigen::Vector2d& p) -> Eigen::Vector2d {
+      return {p.x(), 0.0};
+    },
+    [](const Eigen::Vector2d& p) -> Eigen::Vector2d {
+      return {0.0, p.y()};
+    },
+    [](const Eigen::Vector2d&) -> Eigen::Vector2d {
+      return {1.0, 0.0};
+    },
+    [](const Eigen::Vector2d&) -> Eigen::Vector2d {
+      return {0.0, 1.0};
+    }};
+
+/// A camera's pixels in some samples.
+class CameraPixels {
+ public:
+  CameraPixels(const MountedSensor& mounted, ParameterValues values,
+               std::span<const Sample> samples)
+      : mounted_(mounted), own_(mounted.own_values(values)) {
+    for (const Sample& sample : samples) {
+      const Observation* seen = sample.observation(name());
+      if (seen == nullptr) continue;
+      const Eigen::Vector2d at = center(*seen);
+      for (const Feature& feature : seen->features) {
+        const double distance = (feature.point.head<2>() - at).norm();
+        if (distance > radius_) radius_ = distance;  // not if it is NaN
+      }
+      if (first_ == nullptr) first_ = seen;
+    }
+  }
+
+  [[nodiscard]] const std::string& name() const { return mounted_.mount().name; }
+  [[nodiscard]] double radius() const { return radius_; }  ///< of the farthest feature, pixels
+  [[nodiscard]] double focal_length() const {
+    constexpr double kSmall = 1e-3;
+    const std::vector<double> settings = mounted_.sensor().settings(*first_);
+    const auto at = [&](double x, double y) {
+      return mounted_.sensor().predict({x, y, 1.0}, settings, own_);
+    };
+    return 0.5 *
+           ((at(kSmall, 0.0) - at(0.0, 0.0)).norm() + (at(0.0, kSmall) - at(0.0, 0.0)).norm()) /
+           kSmall;
+  }
+  /// Why a lens is not as it was taken, and what to do.
+  /// @param k1  by which it differs
+  [[nodiscard]] std::string text(double k1) const {
+    const auto is_set = [](double number) { return number != 0.0; };
+    const std::vector<double> settings = mounted_.sensor().settings(*first_);
+    constexpr std::ptrdiff_t kPinhole = 4;  // fx fy cx cy, then those of a lens
+    char number[32];
+    (void)std::snprintf(number, sizeof number, "%.2g", k1);
+    if (std::ssize(settings) > kPinhole &&
+        std::any_of(settings.begin() + kPinhole, settings.end(), is_set)) {
+      return "the distortion in camera_info is not that of its lens at this resolution and focus; "
+             "free its coefficients, or calibrate the lens again; with a k1 that differs by " +
+             std::string(number);
+    }
+    if (first_->camera && std::any_of(first_->camera->d.begin(), first_->camera->d.end(), is_set)) {
+      return "its images are taken as rectified, but show the distortion of a lens; write 'image: "
+             "raw' if they are raw, or calibrate the lens again; with a k1 of " +
+             std::string(number);
+    }
+    return "its lens is distorted, but camera_info has no distortion; free its coefficients (k1, "
+           "k2, p1, p2), or give them (D of camera_info, with 'image: raw'); with a k1 of " +
+           std::string(number);
+  }
+
+  /// Moves the pixels of a sample by a field of shifts.
+  void move(Sample& sample, Shift shift, double step) const {
+    for (Observation& seen : sample.observations) {
+      if (seen.sensor != name()) continue;
+      const Eigen::Vector2d at = center(seen);
+      for (Feature& feature : seen.features) {
+        const Eigen::Vector2d place = (feature.point.head<2>() - at) / radius_;
+        feature.point.head<2>() += step * shift(place);
+      }
+    }
+  }
+
+ private:
+  /// The recorded principal point: a fitted one has moved with the lens.
+  [[nodiscard]] Eigen::Vector2d center(const Observation& seen) const {
+    return mounted_.sensor().predict({0.0, 0.0, 1.0}, mounted_.sensor().settings(seen));
+  }
+
+  const MountedSensor& mounted_;
+  std::vector<double> own_;
+  double radius_ = 0.0;
+  const Observation* first_ = nullptr;
+};
+
+/// True if a coefficient of the lens is free.
+[[nodiscard]] inline bool has_free_lens(const MountedSensor& mounted, const FreeSet& free) {
+  const std::vector<int>& own = mounted.parameters();
+  const std::vector<int>& freed = free.parameters();
+  const auto from =
+      own.begin() + std::min(std::ssize(own), static_cast<std::ptrdiff_t>(kIntrinsics));
+  return std::any_of(from, own.end(), [&](int parameter) {
+    return std::find(freed.begin(), freed.end(), parameter) != freed.end();
+  });
+}
+
+/// What the lens of a camera explains; nullopt if it could be chance, or does not matter.  The pixels of the text are the
+/// part that free parameters have not absorbed: what residuals show.
+/// @param inverse  of J^T W J
+[[nodiscard]] inline std::optional<SystematicError> lens_error(const FittedSamples& fitted,
+                                                               const PoseGroups& poses,
+                                                               const Eigen::MatrixXd& inverse,
+                                                               const CameraPixels& camera) {
+  constexpr double kLeft = 0.95, kPixels = 0.5, kChance = 1e-3;  // the noise of the camera
+  // A shift that is larger, in parts of the radius, is none: what is left of a column that free parameters explain has
+  // the noise of the pixels at which it was computed, and so explains noise.
+  constexpr double kLarge = 0.5;
+  const LinearFit& fit = fitted.fit;
+  const auto slope = [&](Shift shift) {
+    constexpr double kStep = 1e-3;  // pixels
+    return sample_slopes(
+        fitted, [&](Sample& sample) { camera.move(sample, shift, kStep); }, kStep);
+  };
+  Eigen::MatrixXd slopes(fit.residual.size(), 1 + std::ssize(kOtherShifts));
+  slopes.col(0) = slope(lens_shift);
+  const Eigen::ArrayXd squares = fit.loss.array() * fit.residual.array().square();
+  const double own = (slopes.col(0).array() != 0.0).select(squares, 0.0).sum();
+  const Eigen::VectorXd weighted = fit.loss.cwiseProduct(slopes.col(0));
+  const double length = weighted.dot(slopes.col(0));
+  const Fall fall = AddedColumns(Eigen::MatrixXd::Constant(1, 1, length),
+                                 weighted.transpose() * fit.jacobian, inverse)
+                        .fall(Eigen::VectorXd::Constant(1, weighted.dot(fit.residual)));
+  const double left = std::max(0.0, own - fall.squares), farther = -fall.change(0);
+  if (!(own > 0.0) || left > kLeft * kLeft * own || !(std::abs(farther) > kPixels)) return {};
+  if (std::abs(farther) > kLarge * camera.radius()) return {};
+  for (std::size_t i = 0; i < kOtherShifts.size(); ++i) {
+    slopes.col(static_cast<Eigen::Index>(i) + 1) = slope(kOtherShifts[i]);
+  }
+  const double per_pixel = fit.loss.dot(slopes.rightCols(2).rowwise().squaredNorm());
+  if (!(farther * farther * per_pixel > left)) return {};  // below the noise
+  const ColumnTest test = test_column(fit, slopes, poses);
+  const auto cameras = static_cast<double>(fitted.problem.sensors().size());
+  if (test.chance > kChance / cameras || !(test.change * farther < 0.0)) return {};
+  const double f = camera.focal_length(), r = camera.radius();
+  SystematicError error{.owner = camera.name(), .course = ErrorCourse::lens};
+  error.size = farther * f * f / (r * r * r);
+  error.noise_left = std::sqrt(std::max(0.0, 1.0 - fall.squares / squares.sum()));
+  char numbers[64];
+  (void)std::snprintf(numbers, sizeof numbers, "(%+.1f px at %.0f px)",
+                      std::copysign(std::sqrt(fall.squares / length), farther), r);
+  error.text = "residuals of '" + error.owner +
+               "' grow with the distance from the center of the image " + numbers + ": " +
+               camera.text(error.size);
+  return error;
+}
+
+/// Those of all cameras.
+[[nodiscard]] inline std::vector<SystematicError> lens_errors(const FittedSamples& fitted,
+                                                              const PoseGroups& poses,
+                                                              const Eigen::MatrixXd& inverse) {
+  std::vector<SystematicError> errors;
+  for (const MountedSensor& mounted : fitted.problem.sensors()) {
+    if (!mounted.sensor().is_camera() || measures_depth(mounted.sensor())) continue;
+    if (has_free_lens(mounted, fitted.free)) continue;
+    const CameraPixels camera(mounted, fitted.values, fitted.samples);
+    if (!(camera.radius() > 0.0)) continue;
+    if (auto error = lens_error(fitted, poses, inverse, camera)) errors.push_back(*error);
+  }
+  return errors;
+}
+
+}  // namespace kinecal::detail
