@@ -130,57 +130,72 @@ class CameraPixels {
   });
 }
 
-/// What the lens of a camera explains; nullopt if it could be chance, or does not matter.  The pixels of the text are the
-/// part that free parameters have not absorbed: what residuals show.
-/// @param inverse  of J^T W J
-[[nodiscard]] inline std::optional<SystematicError> lens_error(const FittedSamples& fitted,
-                                                               const PoseGroups& poses,
-                                                               const Eigen::MatrixXd& inverse,
-                                                               const CameraPixels& camera) {
-  constexpr double kLeft = 0.95, kPixels = 0.5, kChance = 1e-3;  // the noise of the camera
-  // A shift that is larger, in parts of the radius, is none: what is left of a column that free parameters explain has
-  // the noise of the pixels at which it was computed, and so explains noise.
-  constexpr double kLarge = 0.5;
-  const LinearFit& fit = fitted.fit;
-  const auto slope = [&](Shift shift) {
+/// Columns of pixels shifted by the first term of a lens, and what the fit with it gains.
+class LensColumn {
+ public:
+  LensColumn(const FittedSamples& fitted, const CameraPixels& camera,
+             const Eigen::MatrixXd& inverse)
+      : fitted_(fitted), camera_(camera), slope_(slope(lens_shift)) {
+    const LinearFit& fit = fitted.fit;
+    const Eigen::VectorXd weighted = fit.loss.cwiseProduct(slope_);
+    length_ = weighted.dot(slope_);
+    const Fall fall = AddedColumns(Eigen::MatrixXd::Constant(1, 1, length_),
+                                   weighted.transpose() * fit.jacobian, inverse)
+                          .fall(Eigen::VectorXd::Constant(1, weighted.dot(fit.residual)));
+    gain_ = fall.squares;
+    farther_ = -fall.change(0);
+    const Eigen::ArrayXd squares = fit.loss.array() * fit.residual.array().square();
+    all_ = squares.sum();
+    own_ = (slope_.array() != 0.0).select(squares, 0.0).sum();
+  }
+
+  /// By which pixels at the farthest feature are farther from the center than measured.
+  [[nodiscard]] double farther() const { return farther_; }
+  /// The part of it that free parameters have not absorbed: what residuals show, pixels.
+  [[nodiscard]] double shown() const { return std::copysign(std::sqrt(gain_ / length_), farther_); }
+  [[nodiscard]] double noise_left() const { return std::sqrt(std::max(0.0, 1.0 - gain_ / all_)); }
+  /// True if the lens matters: half a pixel or more, and the noise of the camera falls to 95 %.  Shifts above half of the
+  /// radius are ignored: there the column is mostly noise.
+  [[nodiscard]] bool matters() const {
+    constexpr double kLeft = 0.95, kPixels = 0.5, kLarge = 0.5;
+    return own_ > 0.0 && left() <= kLeft * kLeft * own_ && std::abs(farther_) > kPixels &&
+           std::abs(farther_) <= kLarge * camera_.radius();
+  }
+  /// True if the shift is larger than the noise, and chance does not explain it beside what looks alike.
+  [[nodiscard]] bool is_sure(const PoseGroups& poses) const {
+    constexpr double kChance = 1e-3;
+    Eigen::MatrixXd slopes(slope_.size(), 1 + std::ssize(kOtherShifts));
+    slopes.col(0) = slope_;
+    for (std::size_t i = 0; i < kOtherShifts.size(); ++i) {
+      slopes.col(static_cast<Eigen::Index>(i) + 1) = slope(kOtherShifts[i]);
+    }
+    const LinearFit& fit = fitted_.fit;
+    const double per_pixel = fit.loss.dot(slopes.rightCols(2).rowwise().squaredNorm());
+    if (!(farther_ * farther_ * per_pixel > left())) return false;
+    const ColumnTest test = test_column(fit, slopes, poses);
+    const auto cameras = static_cast<double>(fitted_.problem.sensors().size());
+    return test.chance <= kChance / cameras && test.change * farther_ < 0.0;
+  }
+
+ private:
+  /// Sum of squares of the camera's residuals with the lens.
+  [[nodiscard]] double left() const { return std::max(0.0, own_ - gain_); }
+  /// (rows) change of weighted residuals per pixel.
+  [[nodiscard]] Eigen::VectorXd slope(Shift shift) const {
     constexpr double kStep = 1e-3;  // pixels
     return sample_slopes(
-        fitted, [&](Sample& sample) { camera.move(sample, shift, kStep); }, kStep);
-  };
-  Eigen::MatrixXd slopes(fit.residual.size(), 1 + std::ssize(kOtherShifts));
-  slopes.col(0) = slope(lens_shift);
-  const Eigen::ArrayXd squares = fit.loss.array() * fit.residual.array().square();
-  const double own = (slopes.col(0).array() != 0.0).select(squares, 0.0).sum();
-  const Eigen::VectorXd weighted = fit.loss.cwiseProduct(slopes.col(0));
-  const double length = weighted.dot(slopes.col(0));
-  const Fall fall = AddedColumns(Eigen::MatrixXd::Constant(1, 1, length),
-                                 weighted.transpose() * fit.jacobian, inverse)
-                        .fall(Eigen::VectorXd::Constant(1, weighted.dot(fit.residual)));
-  const double left = std::max(0.0, own - fall.squares), farther = -fall.change(0);
-  if (!(own > 0.0) || left > kLeft * kLeft * own || !(std::abs(farther) > kPixels)) return {};
-  if (std::abs(farther) > kLarge * camera.radius()) return {};
-  for (std::size_t i = 0; i < kOtherShifts.size(); ++i) {
-    slopes.col(static_cast<Eigen::Index>(i) + 1) = slope(kOtherShifts[i]);
+        fitted_, [&](Sample& sample) { camera_.move(sample, shift, kStep); }, kStep);
   }
-  const double per_pixel = fit.loss.dot(slopes.rightCols(2).rowwise().squaredNorm());
-  if (!(farther * farther * per_pixel > left)) return {};  // below the noise
-  const ColumnTest test = test_column(fit, slopes, poses);
-  const auto cameras = static_cast<double>(fitted.problem.sensors().size());
-  if (test.chance > kChance / cameras || !(test.change * farther < 0.0)) return {};
-  const double f = camera.focal_length(), r = camera.radius();
-  SystematicError error{.owner = camera.name(), .course = ErrorCourse::lens};
-  error.size = farther * f * f / (r * r * r);
-  error.noise_left = std::sqrt(std::max(0.0, 1.0 - fall.squares / squares.sum()));
-  char numbers[64];
-  (void)std::snprintf(numbers, sizeof numbers, "(%+.1f px at %.0f px)",
-                      std::copysign(std::sqrt(fall.squares / length), farther), r);
-  error.text = "residuals of '" + error.owner +
-               "' grow with the distance from the center of the image " + numbers + ": " +
-               camera.text(error.size);
-  return error;
-}
 
-/// Those of all cameras.
+  const FittedSamples& fitted_;
+  const CameraPixels& camera_;
+  Eigen::VectorXd slope_;
+  double length_ = 0.0, gain_ = 0.0, farther_ = 0.0;
+  double all_ = 0.0, own_ = 0.0;  ///< sums of squares of all residuals, of the camera's
+};
+
+/// Cameras whose lens is not as it was taken.
+/// @param inverse  of J^T W J
 [[nodiscard]] inline std::vector<SystematicError> lens_errors(const FittedSamples& fitted,
                                                               const PoseGroups& poses,
                                                               const Eigen::MatrixXd& inverse) {
@@ -190,7 +205,18 @@ class CameraPixels {
     if (has_free_lens(mounted, fitted.free)) continue;
     const CameraPixels camera(mounted, fitted.values, fitted.samples);
     if (!(camera.radius() > 0.0)) continue;
-    if (auto error = lens_error(fitted, poses, inverse, camera)) errors.push_back(*error);
+    const LensColumn column(fitted, camera, inverse);
+    if (!column.matters() || !column.is_sure(poses)) continue;
+    const double f = camera.focal_length(), r = camera.radius();
+    char shown[64];
+    (void)std::snprintf(shown, sizeof shown, "(%+.1f px at %.0f px)", column.shown(), r);
+    SystematicError& error =
+        errors.emplace_back(SystematicError{.owner = camera.name(), .course = ErrorCourse::lens});
+    error.size = column.farther() * f * f / (r * r * r);
+    error.noise_left = column.noise_left();
+    error.text = "residuals of '" + error.owner +
+                 "' grow with the distance from the center of the image " + shown + ": " +
+                 camera.text(error.size);
   }
   return errors;
 }

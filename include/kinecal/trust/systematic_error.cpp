@@ -126,7 +126,7 @@ class ErrorSearch {
     return std::abs(error.size) > kWrong &&
            of.share * (freedom_ - 1.0) > kSure * kSure * (1.0 - of.share);
   }
-  /// The best that any trial does in draws of noise alone.
+  /// The smallest chance of any trial in draws of noise alone.
   [[nodiscard]] double least_chance_of_draws() const {
     double least = 1.0;
     std::mt19937 random(1);
@@ -142,7 +142,7 @@ class ErrorSearch {
     const auto rows = static_cast<double>(fitted_.fit.residual.size());
     return static_cast<int>(std::clamp(kRows / rows, kFewest, kDraws));
   }
-  /// Adds samples here and there, if no draw can be split in two as well.
+  /// Adds samples here and there, unless noise alone can be split in two as well.
   void add_mixture(std::vector<SystematicError>& found) const {
     const double most = rule_of({.owner = {}, .course = ErrorCourse::mixture}).most;
     const auto mixture = changes_.mixture(fitted_.fit.residual, freedom_, most);

@@ -20,12 +20,11 @@
 //
 //   g^T S^-1 g      g = X^T W r      S = X^T W (I - J C J^T W) X
 //
-// An error is reported if the noise falls to what rule_of() asks, and if chance is excluded: by the beta distribution
-// of the share of the sum over all errors that are tried, in which a pose counts at most six residuals; and by 99 draws of the
-// noise that the residuals show (common_noise.hpp), in none of which anything is explained that well.  A scale is reported also
-// if it is wrong by a hundredth and five standard errors, however much noise is left.  Features of a view err together, so that
-// a lens is tested by fits without each pose in turn.  What moves the model's own parameters farther than robots are wrong
-// is no evidence.
+// An error is reported if the noise falls far enough (rule_of()) and chance is excluded twice: by the beta distribution
+// of the explained share, where a pose counts at most six residuals, over all errors tried; and by 99 draws of the noise
+// that the residuals show (common_noise.hpp), none of which may explain as much.  A scale that is wrong by a hundredth and
+// five standard errors is reported however much noise is left.  Features of a view err together, so a lens is tested by
+// fits without each pose in turn.  Errors that move the model's own parameters farther than robots are wrong are ignored.
 // Source: Chow, Tests of Equality Between Sets of Coefficients in Two Linear Regressions, 1960; Mooring, Roth, Driels,
 // Fundamentals of Manipulator Calibration, 1991; Brown, Decentering Distortion of Lenses, 1966; Westfall, Young,
 // Resampling-Based Multiple Testing, 1993.
