@@ -136,10 +136,16 @@ void judge_pose(const Assessment& step, Judgement& judgement) {
                   {Remedy::Kind::record});
   }
   if (!kPosition.exceeded(step.pose->position)) return;
-  judgement.add(
-      kPosition.grade(step.pose->position),
-      pose + " is known to " + reading(step.pose->position, "m") + " only; record more samples",
-      {Remedy::Kind::record});
+  std::string answer = "; record more samples";
+  Remedy remedy{Remedy::Kind::record};
+  if (!step.pulls.empty()) {  // what a prior shifts is in the +-, and no sample takes it out
+    remedy = {Remedy::Kind::mend, "loosen or remove prior '" + step.pulls.front().prior + "'"};
+    answer = ", as the samples disagree with prior '" + step.pulls.front().prior +
+             "'; loosen or remove it";
+  }
+  judgement.add(kPosition.grade(step.pose->position),
+                pose + " is known to " + reading(step.pose->position, "m") + " only" + answer,
+                remedy);
 }
 
 }  // namespace
