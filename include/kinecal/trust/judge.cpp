@@ -191,6 +191,9 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
       detail::judge_change(assessments[s], *step.problem, judgement);
     }
     detail::judge_values(step, result, assessments[s], judgement);
+    if (last) {
+      detail::judge_given_places(*step.problem, result.table, assessments[s].size, judgement);
+    }
     if (last) detail::judge_places(*step.problem, assessments[s], result.table, judgement);
     if (last) detail::judge_weak(assessments[s], result.table, judgement);
     if (last) detail::judge_priors(assessments[s], result.table, judgement);
