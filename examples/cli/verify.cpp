@@ -172,6 +172,12 @@ std::string verdict_text(const Check& check) {
   } else {
     text += fmt::format("  - {}: {}\n", confidence_text(drift.probability), size);
   }
+  if (!check.result.knows_common) {
+    text += "  - " + check.result.report +
+            " does not say what noise the features of a pose share (common_noise), as an older "
+            "version wrote it: less noise is expected, and a change may be reported that is none; "
+            "calibrate again\n";
+  }
   text += missed_text(check, drift.missed);
   if (check.fresh.samples.size() < kEnough) {
     text += fmt::format("  - only {}; {} or more in different poses show more\n",

@@ -3,8 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "kinecal/procedure/calibrated_files.hpp"
 #include "support/arm_scene.hpp"
+#include "support/real_recordings.hpp"
 
 namespace kinecal {
 namespace {
@@ -65,6 +69,53 @@ TEST(CalibrateRobot, NamesTheCauseOfABadFit) {
   EXPECT_THAT(calibrated.judgement.reasons.front(), HasSubstr("points of 'tracker'"));
 }
 
+/// A calibration whose configuration says where the tracker is; it is at 0.7 -0.4 0.2.
+CalibratedRobot with_tracker_at(const std::string& x) {
+  Diagnostics found;
+  CalibrationSetup setup = arm_setup(30);
+  setup.config = parse_config(test::kArmConfig +
+                                  "free_frames_initial_values:\n - {name: tracker_frame, x: " + x +
+                                  ", y: -0.4, z: 0.2, roll: 0.1, pitch: -0.2, yaw: 0.7}\n",
+                              "calibrate.yaml", found);
+  return calibrate_robot(std::move(setup));
+}
+
+TEST(CalibrateRobot, DoubtsAFrameThatEndsFarFromWhereSomebodySaidItIs) {
+  EXPECT_EQ(with_tracker_at("0.6").judgement.verdict, Grade::good);
+  const CalibratedRobot far = with_tracker_at("-0.7");
+  EXPECT_EQ(far.judgement.verdict, Grade::use_with_care);
+  EXPECT_THAT(far.judgement.reasons.front(),
+              HasSubstr("'tracker_frame' ended 1.4 m from where the configuration says it is"));
+  EXPECT_THAT(next_step(far), HasSubstr("initial value of 'tracker_frame'"));
+}
+
+/// Half a turn of the frame's guess leads to the mirror image of the robot, which fits as well.
+TEST(CalibrateRobot, TakesTheRobotOfTheUrdfWhereItsMirrorImageFitsAsWell) {
+  KINECAL_NEEDS_DATA("mukca_panda");
+  test::Recording panda = test::recording("panda");
+  FrameInitialValueConfig& fixture = panda.config.steps.back().frame_initial_values.at(0);
+  ASSERT_EQ(fixture.name, "fixture_frame");
+  fixture.rpy.z() -= std::numbers::pi;
+  const CalibratedRobot calibrated = calibrate_robot(test::setup_of(panda));
+  EXPECT_EQ(calibrated.judgement.verdict, Grade::good) << calibrated.judgement.reasons.front();
+  EXPECT_NEAR(calibrated.result.table["fixture_frame_x"].value, 0.42, 0.01);
+  EXPECT_LE(std::abs(calibrated.result.table["panda_joint6_y"].value), 0.02);
+  EXPECT_EQ(calibrated.result.steps.back().starts.given, std::vector<std::string>{"fixture_frame"});
+}
+
+/// A reflector at the origin of its frame, whose turn nothing shows.
+TEST(CalibrateRobot, ConvergesThoughATurnHasNoEffect) {
+  KINECAL_NEEDS_DATA("ur5_tracker");
+  test::Recording ur5 = test::recording("ur5_offsets");
+  FreeFrameConfig& reflector = ur5.config.steps.back().free_frames.at(1);
+  ASSERT_EQ(reflector.name, "smr");
+  reflector.axes.fill(true);
+  const CalibratedRobot calibrated = calibrate_robot(test::setup_of(ur5));
+  EXPECT_TRUE(calibrated.result.converged) << calibrated.result.termination;
+  EXPECT_EQ(calibrated.judgement.verdict, Grade::good) << calibrated.judgement.reasons.front();
+  EXPECT_EQ(calibrated.assessments.back().observability.unobservable.size(), 3u);
+}
+
 TEST(CalibrateRobot, NamesAFileThatDisagreesWithTheOthers) {
   CalibrationSetup setup = arm_setup(60);
   std::mt19937 random(3);
@@ -92,6 +143,19 @@ TEST(CalibrateRobot, SaysAllErrorsOfTheInputAtOnce) {
   EXPECT_THAT(what, HasSubstr("did you mean 'tool'"));
   EXPECT_THAT(what, HasSubstr("did you mean 'lift'"));
   EXPECT_THAT(input_error(arm_setup(1)), HasSubstr("sample"));
+}
+
+/// Before it is solved: no iteration runs.
+TEST(CalibrateRobot, RefusesZerosThatTheUrdfHasNoPlaceFor) {
+  int iterations = 0;
+  CalibrationOptions options;
+  options.offsets = OffsetStyle::ros2_control;
+  options.progress = [&](const std::string&, int, double) { ++iterations; };
+  EXPECT_THAT(input_error(arm_setup(30), options),
+              HasSubstr("arm.urdf: <ros2_control> has no joint"));
+  EXPECT_EQ(iterations, 0);
+  options.in_servos = {"lift", "elbow", "roll", "flex"};  // no zero is left for the URDF
+  EXPECT_EQ(input_error(arm_setup(30), options), "");
 }
 
 struct Enough {};

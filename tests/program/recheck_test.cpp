@@ -92,6 +92,14 @@ TEST_F(Recheck, HoldsIfNothingMoved) {
   EXPECT_GT(visible[0]["size"].as<double>(), 1e-5);
 }
 
+TEST_F(Recheck, SaysThatAnOlderReportDoesNotKnowNoiseOfPoses) {
+  calibrate();
+  EXPECT_THAT(with_new("verify").out, Not(HasSubstr("common_noise")));
+  replace_in("out/report.json", "\"common_noise\"", "\"uncommon_noise\"");
+  EXPECT_THAT(with_new("verify").out,
+              HasSubstr("report.json does not say what noise the features of a pose share"));
+}
+
 TEST_F(Recheck, SaysWhatToRecordIfAChangeOfADegreeWouldNotBeFound) {
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0.0, 0.003);

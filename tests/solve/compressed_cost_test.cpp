@@ -52,6 +52,26 @@ FreeSet all_free(const Problem& problem) {
   return FreeSet(all, problem.table().size());
 }
 
+/// Turns of a frame about its only point have columns of rounding, which are in no direction.
+TEST(CompressedCost, TakesColumnsOfRoundingForZero) {
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(20, 4);
+  const Eigen::VectorXd residual = Eigen::VectorXd::Random(20);
+  jacobian.col(2) *= 1e-17;
+  const auto equivalent = [&](const Eigen::MatrixXd& of) {
+    NormalEquations normal(static_cast<int>(of.cols()));
+    normal.cost = 0.5 * residual.squaredNorm();
+    normal.gradient = of.transpose() * residual;
+    normal.hessian = of.transpose() * of;
+    return detail::EquivalentResidual(normal);
+  };
+  const detail::EquivalentResidual found = equivalent(jacobian);
+  EXPECT_LE(found.jacobian.col(2).norm(), 1e-15);
+  const std::vector<Eigen::Index> others = {0, 1, 3};
+  const detail::EquivalentResidual expected = equivalent(jacobian(Eigen::all, others));
+  EXPECT_NEAR(found.residual.head(4).norm(), expected.residual.head(3).norm(), 1e-12);
+  EXPECT_NEAR(found.residual.norm(), residual.norm(), 1e-12);
+}
+
 TEST(CompressedCost, HasTheCostGradientAndHessianOfTheStackedResiduals) {
   const Problem problem = noisy_problem({});
   const FreeSet free = all_free(problem);

@@ -46,6 +46,20 @@ TEST(StartSummary, SaysWhatWasDone) {
             "minima, costs 0.00012 (taken), 0.35; 1 solve ended in none");
 }
 
+/// Somebody knew it, or meant to.
+TEST(StartSummary, DoesNotCallUnknownWhatWasGiven) {
+  StartSummary summary{.given = {"tracker"}, .starts = 60, .taken = 0};
+  detail::add_minimum(summary, 0.35);
+  EXPECT_EQ(
+      to_string(summary),
+      "pose of 'tracker' was given, but the fit from there ended badly: found from 60 starts; "
+      "1 minimum, cost 0.35");
+  summary.frames = {"a", "b"};
+  EXPECT_EQ(to_string(summary),
+            "poses of 'a' and 'b' were not known, pose of 'tracker' was given, but the fit from "
+            "there ended badly: found from 60 starts; 1 minimum, cost 0.35");
+}
+
 TEST(StartSummary, SaysThatNothingWasFound) {
   EXPECT_EQ(to_string(StartSummary{.frames = {"a"}, .starts = 60}),
             "pose of 'a' was not known: not found from 60 starts; 0 minima");

@@ -114,6 +114,8 @@ TEST(Starts, AGuessThatEndsWellIsNotDoubted) {
 TEST(Starts, AGuessThatEndsBadlyIsDoubted) {
   const Ended ended = search(board_problem(kFar, 20), true);
   EXPECT_TRUE(ended.result.starts.searched());
+  EXPECT_EQ(ended.result.starts.given, std::vector<std::string>{"board"});
+  EXPECT_TRUE(ended.result.starts.frames.empty()) << "it was not unknown";
   EXPECT_NEAR(ended.result.final_cost / search(board_problem(kFar, 20)).result.final_cost, 1.0,
               1e-6);
 }

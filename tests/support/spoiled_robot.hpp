@@ -200,6 +200,8 @@ class SpoiledRobot {
 
   [[nodiscard]] const Robot& robot() const { return robot_; }
   [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
+  /// Samples of other poses.
+  [[nodiscard]] const std::vector<Sample>& others() const { return others_; }
   [[nodiscard]] const Config& config() const { return config_; }
   [[nodiscard]] const IdentifyTask& task() const { return task_; }
   [[nodiscard]] FoundErrors found() const { return find_errors(config_, robot_, samples_); }

@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <random>
+#include <string>
 
 #include "support/noisy_scene.hpp"
+#include "support/repetitions.hpp"
+#include "support/tracked_arm.hpp"
 
 namespace kinecal {
 namespace {
@@ -91,6 +95,34 @@ void read_again(test::NoisyScene& scene, int readings, unsigned seed) {
       scene.samples.push_back(std::move(sample));
     }
   }
+}
+
+/// Each joint scatters along its own course, the first one as the tracker's frame turns: the tracker's +- are those of
+/// the poses, not a mean of all directions.
+TEST(GradientVariance, CoversTheFrameOfATrackerWhereJointsScatter) {
+  constexpr test::ArmKind kArm{"joints to 0.2 mrad", 7, 3, 2e-5, 2e-4, 0.0, 0.0, 60};
+  const int runs = test::repetitions(300, 60);
+  int inside = 0, all = 0;
+  double squares = 0.0;  // of the turn about z, which the first joint's scatter looks like
+  for (int run = 0; run < runs; ++run) {
+    const test::TrackedArm arm(kArm, static_cast<unsigned>(run));
+    const Assessment& found = arm.assessment();
+    const Eigen::VectorXd values = arm.values();  // of frames, the truth is zero
+    for (std::size_t c = 0; c < found.parameters.size(); ++c) {
+      const int p = found.parameters[c];
+      const std::string& name = arm.fitted().table()[p].name;
+      if (!name.starts_with("tracker")) continue;
+      const double z = values(p) / found.uncertainty.deviation(static_cast<Eigen::Index>(c));
+      inside += std::abs(z) < 1.96 ? 1 : 0;
+      squares += name == "tracker_c" ? z * z / runs : 0.0;
+      ++all;
+    }
+  }
+  const double share = static_cast<double>(inside) / all;
+  std::printf("%.3f of %d intervals cover; of the turn about z, errors are %.2f times the +-\n",
+              share, all, std::sqrt(squares));
+  EXPECT_GE(share, 0.92);
+  EXPECT_LE(std::sqrt(squares), 1.2);
 }
 
 TEST(PoseGroups, AreReadingsOfOnePose) {

@@ -116,6 +116,34 @@ TEST(Judge, ExpectsSmallerResidualsOfASmallRobot) {
   }
 }
 
+/// Poses have neither metres nor pixels: they are judged by their distances and angles.
+TEST(Judge, ComparesPosesByDistanceAndAngle) {
+  constexpr double kDegree = 0.017453292519943295;
+  struct Case {
+    double distance, degrees, size;
+    Grade verdict;
+    const char* reason;
+  };
+  for (const Case& of : {Case{7e-3, 1.8, 2.0, Grade::good, ""},
+                         {9e-3, 0.1, 2.0, Grade::use_with_care, "poses differ by 9 mm"},
+                         {9e-3, 0.1, 0.4, Grade::do_not_use, "poses differ by 9 mm"},
+                         {1e-3, 2.1, 2.0, Grade::use_with_care, "and 2.1 deg"},
+                         {0.026, 0.1, 2.0, Grade::do_not_use, "the model does not fit"},
+                         {1e-3, 6.1, 2.0, Grade::do_not_use, "the model does not fit"}}) {
+    Judged judged;
+    judged.noise().unit = "1";
+    judged.noise().given = 0.0;
+    judged.noise().sigma = judged.noise().robust = 5.0;
+    judged.noise().distance = of.distance;
+    judged.noise().angle = of.degrees * kDegree;
+    judged.assessments[0].held_out.clear();
+    judged.assessments[0].size = of.size;
+    expect(judged.judgement(), of.verdict, of.reason);
+    judged.noise().given = 5.0;  // a sigma is compared with the residuals alone
+    expect(judged.judgement(), Grade::good, "");
+  }
+}
+
 TEST(Judge, NamesWhatExplainsTheResiduals) {
   Judged judged;
   SystematicError& error = judged.assessments[0].systematic.emplace(
@@ -167,6 +195,21 @@ TEST(Judge, ComparesTheNoiseWithWhatRobotsReachWhereNoSigmaWasGiven) {
     judged.assessments[0].held_out.clear();
     expect(judged.judgement(), verdict, "px");
   }
+}
+
+/// What a prior shifts is in the +-, and no sample takes it out.
+TEST(Judge, AsksForSamplesOrForAnotherPrior) {
+  Judged judged;
+  ASSERT_TRUE(judged.assessments[0].pose.has_value());
+  judged.assessments[0].pose->position = 0.008;
+  judged.assessments[0].elsewhere = 0.0;
+  expect(judged.judgement(), Grade::use_with_care, "is known to 8 mm only; record more samples");
+  EXPECT_EQ(judged.judgement().remedies.front().kind, Remedy::Kind::record);
+  judged.assessments[0].pulls = {
+      {.prior = "camera_mount", .parameter = 0, .shift = 0.1, .times = 3.0}};
+  expect(judged.judgement(), Grade::use_with_care,
+         "is known to 8 mm only, as the samples disagree with prior 'camera_mount'");
+  EXPECT_EQ(judged.judgement().remedies.front().how, "loosen or remove prior 'camera_mount'");
 }
 
 TEST(Judge, RefusesWhatDeterminesNothing) {

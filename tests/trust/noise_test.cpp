@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "support/noisy_scene.hpp"
 
 namespace kinecal {
@@ -39,6 +42,35 @@ TEST(Noise, OfTheMedianDoesNotSeeAFewRuinedFeatures) {
   for (std::size_t i = 0; i < 10; ++i) distances[99 - i] = 1e6;
   EXPECT_EQ(robust_sigma(distances, 3), before);
   EXPECT_EQ(robust_sigma({}, 3), 0.0);
+}
+
+/// Poses that differ by 2 mm and 10 mrad in each component, weighted by other scales; a tenth is ruined.
+TEST(Noise, OfPosesIsADistanceAndAnAngle) {
+  constexpr double kDistance = 2e-3, kAngle = 0.01;
+  constexpr Eigen::Index kFeatures = 4000;
+  Term term{.name = "hand_eye"};
+  term.pose_scales = {500.0, 40.0};
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd residuals(6, kFeatures);
+  for (Eigen::Index i = 0; i < kFeatures; ++i) {
+    const double ruined = i % 10 == 0 ? 50.0 : 1.0;
+    for (int k = 0; k < 6; ++k) {
+      residuals(k, i) = ruined * normal(random) * (k < 3 ? 500.0 * kDistance : 40.0 * kAngle);
+    }
+  }
+  BlockNoise noise, of_points;
+  noise.freedom = of_points.freedom = 6.0 * kFeatures;
+  detail::set_pose_errors(term, residuals, noise);
+  constexpr double kOfTenth = 1.08;  // a tenth beyond moves the median so far
+  EXPECT_NEAR(noise.distance, kOfTenth * std::sqrt(3.0) * kDistance, 0.03 * noise.distance);
+  EXPECT_NEAR(noise.angle, kOfTenth * std::sqrt(3.0) * kAngle, 0.03 * noise.angle);
+  noise.unit_sigma = 2.0;  // a sigma of 2 halves the weighted residuals
+  const double once = noise.distance;
+  detail::set_pose_errors(term, residuals, noise);
+  EXPECT_NEAR(noise.distance, 2.0 * once, 1e-12);
+  detail::set_pose_errors(Term{.name = "points"}, residuals, of_points);
+  EXPECT_EQ(of_points.distance, 0.0);
 }
 
 TEST(Noise, OfTheMedianIsThatOfChiSquare) {

@@ -271,4 +271,13 @@ template <ErrorBlock B>
 inline constexpr int kResiduals =
     detail::ResultFor<B, typename detail::InputsOf<B>::type>::type::RowsAtCompileTime;
 
+/// A block whose residuals are a translation and a rotation, each times its scale: they are judged as a distance and an
+/// angle.
+template <class B>
+concept ScaledPoseBlock = ErrorBlock<B> && kResiduals<B>
+== 6 && requires(const B& block) {
+  { block.translation_scale } -> std::convertible_to<double>;  // 1 / metre
+  { block.rotation_scale } -> std::convertible_to<double>;     // 1 / radian
+};
+
 }  // namespace kinecal

@@ -45,5 +45,6 @@ struct PoseToPose {
     return r;
   }
 };
+static_assert(ScaledPoseBlock<PoseToPose>);
 
 }  // namespace kinecal

@@ -93,12 +93,15 @@ class BasicProblem final : public AnyProblem {
           "error block '" + name + "': its residual has no unit; write in it, for " +
           "metres: static constexpr const char* kUnit = \"m\";  (or \"px\", \"1\")");
     }
-    add_term({.name = name,
+    Term term{.name = name,
               .options = std::move(complete),
               .quantities = kQuantities<B>,
               .conditions = kConditionsOfBlock<B>,
-              .feature_size = kResiduals<B>},
-             sensors, parameters_of(block));
+              .feature_size = kResiduals<B>};
+    if constexpr (ScaledPoseBlock<B>) {
+      term.pose_scales = {block.translation_scale, block.rotation_scale};
+    }
+    add_term(std::move(term), sensors, parameters_of(block));
     codes_.push_back(std::make_shared<const detail::BlockTerm<B, S>>(block));
   }
   void set_walks(const std::vector<detail::CompiledWalk<S>>& walks);

@@ -70,6 +70,12 @@ enum class Linearization {
 /// The largest number of parameters, its own and its sensors', that an error block may depend on.
 inline constexpr std::size_t kMostOwn = 32;
 
+/// How a block that compares poses scales its six residuals: three of the translation, three of the rotation.
+struct PoseScales {
+  double per_metre = 1.0;   ///< residual of a translation by a metre
+  double per_radian = 1.0;  ///< residual of a rotation by a radian
+};
+
 /// A term of the cost: an error block with the sensors that it compares.
 struct Term {
   std::string name;          ///< of the error block
@@ -82,6 +88,8 @@ struct Term {
   /// Names of the sample's conditions that the block takes.
   std::span<const std::string_view> conditions = {};
   int feature_size = 1;  ///< number of residuals of one feature
+  /// Of a block of poses that has scales: its residuals are distances and angles; empty for others.
+  std::optional<PoseScales> pose_scales = {};
 
   /// True if feature i is the same one for all sensors; false if all features of a sensor form one
   /// plane.

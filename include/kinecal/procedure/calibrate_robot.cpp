@@ -149,10 +149,31 @@ void judge_files(const Calibration& calibration, std::span<const Sample> samples
                 names, judged.judgement);
 }
 
+/// Checks that the URDF has a place for the zeros that are free, before a result lacks one.
+/// @throws InputError  if <ros2_control> should hold them, and does not have the joint
+void check_offset_places(const PreparedCalibration& setup, const CalibrationOptions& options) {
+  if (options.offsets != OffsetStyle::ros2_control || setup.urdf_text.empty()) return;
+  constexpr double kSome = 1e-3;  // radians or metres
+  std::vector<JointPatch> zeros;
+  const ParameterTable& table = setup.calibration.table;
+  for (int p = 0; p < table.size(); ++p) {
+    const auto frees_it = [&](const CalibrationStep& step) {
+      const std::vector<int>& free = step.free.parameters();
+      return std::find(free.begin(), free.end(), p) != free.end();
+    };
+    const std::string& name = table[p].name;
+    if (!setup.robot.has_joint(name) || options.in_servos.contains(name)) continue;
+    const std::vector<CalibrationStep>& steps = setup.calibration.steps;
+    if (std::any_of(steps.begin(), steps.end(), frees_it)) zeros.push_back({name, kSome});
+  }
+  (void)patch_urdf(setup.urdf_text, setup.urdf, setup.robot, zeros, options.offsets);
+}
+
 /// Solves and judges what is assembled.
 void fit(const CalibrationOptions& options, CalibratedRobot& calibrated) {
   PreparedCalibration& setup = calibrated.setup;
   setup.diagnostics.throw_if_errors();
+  check_offset_places(setup, options);
   JudgedResult judged =
       calibrate_and_judge(setup.calibration, setup.samples, procedure_of(setup, options));
   calibrated.samples = used_samples(judged, setup.samples);

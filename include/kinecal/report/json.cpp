@@ -25,6 +25,7 @@ namespace detail {
   if (!starts.searched()) return nullptr;
   const auto write = [](const FoundMinimum& minimum) { return json(minimum); };
   return {{"frames", starts.frames},
+          {"given", starts.given},
           {"starts", starts.starts},
           {"random_starts", starts.random_starts},
           {"failed", starts.failed},

@@ -48,8 +48,12 @@ inline void set_singular(Eigen::MatrixXd left, Eigen::VectorXd gradient,
 
 KINECAL_INLINE EquivalentResidual::EquivalentResidual(const NormalEquations& normal) {
   const Eigen::Index n = normal.gradient.size();
-  const Eigen::VectorXd scale =
-      normal.hessian.diagonal().unaryExpr([](double h) { return h > 0.0 ? std::sqrt(h) : 1.0; });
+  // A shorter column is rounding, as of the turn of a frame about the only point in it.  Scaled to one, it would be a
+  // direction in which the cost seems to fall.
+  constexpr double kNoEffect = 1e-13;  // of the longest column
+  const double least = n > 0 ? kNoEffect * kNoEffect * normal.hessian.diagonal().maxCoeff() : 0.0;
+  const Eigen::VectorXd scale = normal.hessian.diagonal().unaryExpr(
+      [least](double h) { return h > least ? std::sqrt(h) : 1.0; });
   const Eigen::MatrixXd scaled =
       scale.cwiseInverse().asDiagonal() * normal.hessian * scale.cwiseInverse().asDiagonal();
   const Eigen::VectorXd gradient = scale.cwiseInverse().cwiseProduct(normal.gradient);

@@ -25,10 +25,12 @@ struct FoundMinimum {
 
 /// The starts of a step.  Empty if only the configured start was used.
 struct StartSummary {
-  std::vector<std::string> frames = {};   ///< frames whose pose was searched for
-  int starts = 0;                         ///< of that search, fitting frames only
-  int random_starts = 0;                  ///< with joints and frames moved at random
-  int failed = 0;                         ///< solves of everything that reached no minimum
+  std::vector<std::string> frames = {};  ///< frames whose pose was searched for: nobody gave it
+  std::vector<std::string> given =
+      {};                 ///< the same though it was given: from there the fit ended badly
+  int starts = 0;         ///< of that search, fitting frames only
+  int random_starts = 0;  ///< with joints and frames moved at random
+  int failed = 0;         ///< solves of everything that reached no minimum
   std::vector<FoundMinimum> minima = {};  ///< of solves of everything; lowest first
   int taken = -1;                         ///< index of the resulting minimum; -1: none
   double seconds = 0.0;                   ///< wall time of all starts

@@ -61,11 +61,16 @@ KINECAL_INLINE std::string to_string(const StartSummary& summary) {
   std::ostringstream out;
   out.precision(6);
   if (summary.starts > 0) {
-    const bool one = summary.frames.size() == 1;
-    out << (one ? "pose of " : "poses of ") << detail::quoted(summary.frames)
-        << (one ? " was" : " were")
-        << " not known: " << (summary.minima.empty() ? "not found from " : "found from ")
-        << summary.starts << " starts";
+    const auto poses = [&](const std::vector<std::string>& frames, const char* what) {
+      const bool one = frames.size() == 1;
+      out << (one ? "pose of " : "poses of ") << detail::quoted(frames)
+          << (one ? " was " : " were ") << what;
+    };
+    if (!summary.frames.empty()) poses(summary.frames, "not known");
+    if (!summary.frames.empty() && !summary.given.empty()) out << ", ";
+    if (!summary.given.empty()) poses(summary.given, "given, but the fit from there ended badly");
+    out << ": " << (summary.minima.empty() ? "not found from " : "found from ") << summary.starts
+        << " starts";
   }
   if (summary.random_starts > 0) {
     out << (summary.starts > 0 ? ", and " : "")

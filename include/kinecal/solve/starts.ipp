@@ -6,6 +6,9 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <numbers>
+#include <string>
+#include <vector>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/evaluation/parallel.hpp"
@@ -25,9 +28,20 @@ struct Attempt {
 /// All starts of a step.
 class Starts {
  public:
+  /// @param unknown  frames whose pose may be anywhere
   Starts(const AnyProblem& problem, const FreeSet& free, const SolveOptions& options,
-         const Eigen::VectorXd& from)
-      : problem_(problem), free_(free), options_(options) {
+         const Eigen::VectorXd& from, std::span<const UnknownFrame> unknown)
+      : problem_(problem), free_(free), options_(options), from_(from) {
+    const auto is_unknown = [&](int p) {
+      return std::any_of(unknown.begin(), unknown.end(), [p](const UnknownFrame& frame) {
+        return std::find(frame.axes.begin(), frame.axes.end(), p) != frame.axes.end();
+      });
+    };
+    for (const int p : free.parameters()) {
+      const bool of_joint =
+          problem.robot().has_joint(problem.owners()[static_cast<std::size_t>(p)]);
+      if (of_joint && !is_unknown(p)) of_joints_.push_back(p);
+    }
     const double cost = cost_at(*problem.evaluator(free, options.threads), from);
     if (std::isfinite(cost)) floor_ = kRounding * cost;
   }
@@ -40,8 +54,7 @@ class Starts {
     count(plain);
     const bool elsewhere =
         best_.result.converged && any_turned(frames, false, best_.values, plain.values);
-    if (elsewhere ? is_better(plain.result, best_.result) : !is_better(best_.result, plain.result))
-      best_ = std::move(plain);
+    if (elsewhere ? is_better(plain, best_) : !is_better(best_, plain)) best_ = std::move(plain);
   }
 
   /// Searches for the poses of frames and solves from the best few fits.
@@ -50,7 +63,7 @@ class Starts {
               const Eigen::VectorXd& from) {
     summary_.frames.clear();
     for (const UnknownFrame& frame : frames) {
-      if (frame.turns()) summary_.frames.push_back(frame.name);
+      if (frame.turns()) (frame.has_guess ? summary_.given : summary_.frames).push_back(frame.name);
     }
     std::vector<Eigen::VectorXd> starts;
     const auto evaluator = problem_.evaluator(free_, options_.threads);
@@ -81,7 +94,8 @@ class Starts {
   /// True if the best solve so far casts doubt on the given poses.
   [[nodiscard]] bool ended_badly(std::span<const UnknownFrame> frames,
                                  const Eigen::VectorXd& from) const {
-    return !best_.result.converged || any_turned(frames, true, from, best_.values);
+    return !best_.result.converged || any_turned(frames, true, from, best_.values) ||
+           bent_parts(best_.values) > 0;
   }
 
   /// The result and, if usable, its values.
@@ -158,18 +172,46 @@ class Starts {
     });
     for (Attempt& attempt : attempts) {
       count(attempt);
-      if (is_better(attempt.result, best_.result)) best_ = std::move(attempt);
+      if (is_better(attempt, best_)) best_ = std::move(attempt);
     }
   }
 
-  [[nodiscard]] bool is_better(const StepResult& a, const StepResult& b) const {
+  /// How many parameters of joints say that the robot is not the one of the URDF: turned by more than 45 degrees or
+  /// moved by more than 0.1 m, as in the mirror image of the right minimum.
+  [[nodiscard]] int bent_parts(const Eigen::VectorXd& values) const {
+    constexpr double kTurned = std::numbers::pi / 4.0, kMoved = 0.1;
+    return static_cast<int>(std::count_if(of_joints_.begin(), of_joints_.end(), [&](int p) {
+      const std::string& unit = problem_.table()[p].unit;
+      const double by = std::abs(values(p) - from_(p));
+      return (unit == "rad" && by > kTurned) || (unit == "m" && by > kMoved);
+    }));
+  }
+
+  /// True if noise may have decided which of two costs is lower: chi-square differs by less than it scatters, or by
+  /// less than what any model lacks.
+  [[nodiscard]] bool are_alike(const StepResult& a, const StepResult& b) const {
+    constexpr double kChance = 12.0, kLacks = 0.02;
+    const double less = std::min(a.final_cost, b.final_cost),
+                 by = std::abs(a.final_cost - b.final_cost);
+    const double freedom = std::max(1.0, static_cast<double>(a.num_residuals - a.num_parameters));
+    return by <= std::max(kChance / freedom, kLacks) * less + floor_;
+  }
+
+  /// True for the lower cost; of costs that are alike, for the robot that is nearer to its URDF.
+  [[nodiscard]] bool is_better(const Attempt& one, const Attempt& other) const {
+    const StepResult &a = one.result, &b = other.result;
     if (a.converged != b.converged) return a.converged;
-    return a.converged && a.final_cost < b.final_cost * (1.0 - kSameCost) - floor_;
+    if (!a.converged) return false;
+    const int bent = bent_parts(one.values), bent_other = bent_parts(other.values);
+    if (bent != bent_other && are_alike(a, b)) return bent < bent_other;
+    return a.final_cost < b.final_cost * (1.0 - kSameCost) - floor_;
   }
 
   const AnyProblem& problem_;
   const FreeSet& free_;
   const SolveOptions& options_;
+  Eigen::VectorXd from_;        ///< of all parameters: the configured values
+  std::vector<int> of_joints_;  ///< free parameters of joints whose place is known
   StartSummary summary_;
   Attempt best_;
   double floor_ = 0.0;  ///< costs below are rounding
@@ -184,7 +226,7 @@ KINECAL_INLINE StepResult solve_from_starts(const AnyProblem& problem, const Fre
   const auto begin = std::chrono::steady_clock::now();
   const Eigen::VectorXd from = values;
   const AnyProblem& few = excerpt != nullptr ? *excerpt : problem;
-  detail::Starts starts(problem, free, options, from);
+  detail::Starts starts(problem, free, options, from, unknown);
   std::vector<UnknownFrame> without_guess;
   std::copy_if(unknown.begin(), unknown.end(), std::back_inserter(without_guess),
                [](const UnknownFrame& frame) { return !frame.has_guess; });

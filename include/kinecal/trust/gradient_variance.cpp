@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "kinecal/geometry/eigenpairs.hpp"
@@ -30,11 +31,22 @@ namespace {
 
 /// Sums over one group, and over all.
 struct GradientSums {
+  Eigen::MatrixXd influence;            ///< (free x coordinates) of a gradient on each parameter
   Eigen::VectorXd together;             ///< gradient of all features of a group
   Eigen::MatrixXd share;                ///< of the group in the information
+  Eigen::VectorXd of_parameters;        ///< (free) of the group in the variance of each parameter
+  Eigen::VectorXd sum, squares;         ///< (free) of those shares, over all groups
   std::vector<Eigen::VectorXd> groups;  ///< x of each group
   double of_features = 0.0;             ///< squares of the gradients of single features
   double chance = 0.0;  ///< variance of trace S if features err independently, relative
+
+  explicit GradientSums(Eigen::MatrixXd of)
+      : influence(std::move(of)),
+        together(Eigen::VectorXd::Zero(influence.cols())),
+        share(Eigen::MatrixXd::Zero(influence.cols(), influence.cols())),
+        of_parameters(Eigen::VectorXd::Zero(influence.rows())),
+        sum(of_parameters),
+        squares(of_parameters) {}
 
   /// @param rows  derivatives of a block's residuals, in whitened coordinates
   /// @param size  residuals of a feature
@@ -48,29 +60,43 @@ struct GradientSums {
     }
     together.noalias() += rows.transpose() * weighted;
     share.noalias() += rows.transpose() * loss.asDiagonal() * rows;
+    of_parameters.noalias() += (influence * rows.transpose()).cwiseAbs2() * loss;
   }
   /// Adds the group and starts another one.
   void end_group() {
     groups.push_back(restored(share, together));
     chance += 2.0 * share.squaredNorm();
+    sum += of_parameters;
+    squares += of_parameters.cwiseAbs2();
     together.setZero();
     share.setZero();
+    of_parameters.setZero();
+  }
+  /// S.
+  [[nodiscard]] Eigen::MatrixXd scatter() const {
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(influence.cols(), influence.cols());
+    for (const Eigen::VectorXd& x : groups) all.noalias() += x * x.transpose();
+    return all;
   }
 };
 
-/// S, shrunk towards a target as far as its own scatter demands.
-[[nodiscard]] Eigen::MatrixXd shrunk(const std::vector<Eigen::VectorXd>& groups,
-                                     const Eigen::MatrixXd& target) {
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(target.rows(), target.cols());
-  double fourth = 0.0;
-  for (const Eigen::VectorXd& x : groups) {
-    sum.noalias() += x * x.transpose();
-    fourth += x.squaredNorm() * x.squaredNorm();
+/// S, shrunk towards a target as far as the scatter of the variances of the parameters demands.
+[[nodiscard]] Eigen::MatrixXd shrunk(const GradientSums& sums, const Eigen::MatrixXd& target) {
+  const Eigen::MatrixXd scatter = sums.scatter(), &of = sums.influence;
+  const auto variances = [&](const Eigen::MatrixXd& matrix) {
+    return Eigen::ArrayXd((of * matrix).cwiseProduct(of).rowwise().sum().array());
+  };
+  const Eigen::ArrayXd found = variances(scatter), expected = variances(target);
+  double apart = 0.0, chance = 0.0;
+  for (Eigen::Index p = 0; p < found.size(); ++p) {
+    if (!(expected(p) > 0.0) || !(sums.sum(p) > 0.0)) continue;
+    const double by = found(p) / expected(p) - 1.0;
+    apart += by * by;
+    chance += 2.0 * sums.squares(p) / (sums.sum(p) * sums.sum(p));
   }
-  const double scatter = fourth - sum.squaredNorm() / static_cast<double>(groups.size());
-  const double distance = (sum - target).squaredNorm();
-  const double weight = distance > scatter ? scatter / distance : 1.0;  // of the target
-  return weight * target + (1.0 - weight) * sum;
+  if (!(apart > chance)) return target;
+  const double weight = chance / apart;  // of the target
+  return weight * target + (1.0 - weight) * scatter;
 }
 
 }  // namespace
@@ -86,7 +112,7 @@ GradientVariance gradient_variance(const AnyProblem& problem, const LinearFit& f
   const Eigen::MatrixXd whitening = spectrum.scale.cwiseInverse().asDiagonal() *
                                     spectrum.vectors.rightCols(rank) *
                                     spectrum.singular.tail(rank).cwiseInverse().asDiagonal();
-  detail::GradientSums sums{Eigen::VectorXd::Zero(rank), Eigen::MatrixXd::Zero(rank, rank), {}};
+  detail::GradientSums sums(fit.coordinates.basis * whitening);
   double directions = 0.0;
   for (const std::vector<std::size_t>& of_pose : detail::blocks_by_pose(fit, poses)) {
     for (const std::size_t b : of_pose) {
@@ -112,8 +138,7 @@ GradientVariance gradient_variance(const AnyProblem& problem, const LinearFit& f
   const Eigen::MatrixXd back = spectrum.scale.asDiagonal() * spectrum.vectors.rightCols(rank) *
                                spectrum.singular.tail(rank).asDiagonal();
   const Eigen::MatrixXd of_rows = whitening.transpose() * (independent - of_priors) * whitening;
-  return {back * detail::shrunk(sums.groups, effect * of_rows) * back.transpose() + of_priors,
-          effect};
+  return {back * detail::shrunk(sums, effect * of_rows) * back.transpose() + of_priors, effect};
 }
 
 }  // namespace kinecal

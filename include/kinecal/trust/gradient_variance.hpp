@@ -7,7 +7,13 @@
 // coordinates in which the whole information is the identity.  Independent errors give d = 1; if all n
 // features of each group err alike, n.  The factor (I - M)^-1/2 restores what the fit has taken from the
 // residuals of an influential group.  S is exact for many groups and noisy for few, so it is shrunk
-// towards d times the variance of independent features, as far as its own scatter demands.
+// towards T, d times the variance of independent features, as far as its own scatter demands:
+//
+//   w T + (1 - w) S,   w = sum of 2 / n_p / sum of (s_p / t_p - 1)^2, at most 1
+//
+// over the parameters p, with s_p and t_p their variances by S and by T, and n_p the degrees of freedom of s_p: the
+// groups that p depends on (Satterthwaite).  The joint that scatters turns the tracker; a weight of all
+// directions alike would take that for noise of S.
 // Source: Kish, Survey Sampling, 1965, 8.2; Bell, McCaffrey, Bias Reduction in Standard Errors for
 // Linear Regression with Multi-Stage Samples, 2002 (CR2); Ledoit, Wolf, A Well-Conditioned Estimator for
 // Large-Dimensional Covariance Matrices, 2004.

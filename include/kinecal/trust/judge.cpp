@@ -135,10 +135,16 @@ void judge_pose(const Assessment& step, Judgement& judgement) {
                   {Remedy::Kind::record});
   }
   if (!kPosition.exceeded(step.pose->position)) return;
-  judgement.add(
-      kPosition.grade(step.pose->position),
-      pose + " is known to " + reading(step.pose->position, "m") + " only; record more samples",
-      {Remedy::Kind::record});
+  std::string answer = "; record more samples";
+  Remedy remedy{Remedy::Kind::record};
+  if (!step.pulls.empty()) {  // what a prior shifts is in the +-, and no sample takes it out
+    remedy = {Remedy::Kind::mend, "loosen or remove prior '" + step.pulls.front().prior + "'"};
+    answer = ", as the samples disagree with prior '" + step.pulls.front().prior +
+             "'; loosen or remove it";
+  }
+  judgement.add(kPosition.grade(step.pose->position),
+                pose + " is known to " + reading(step.pose->position, "m") + " only" + answer,
+                remedy);
 }
 
 }  // namespace
@@ -186,6 +192,9 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
                            {sentence(error)});
     }
     detail::judge_values(step, result, assessments[s], judgement);
+    if (last) {
+      detail::judge_given_places(*step.problem, result.table, assessments[s].size, judgement);
+    }
     if (last) detail::judge_places(*step.problem, assessments[s], result.table, judgement);
     if (last) detail::judge_weak(assessments[s], result.table, judgement);
     if (last) detail::judge_priors(assessments[s], result.table, judgement);

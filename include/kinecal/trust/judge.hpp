@@ -6,6 +6,7 @@
 //   1 px; or a sigma above 5 cm or 30 px and 50 x the noise
 //   without sigma: distances of 20 mm, 12 px, in metres 8 mm, 4 px
 //   less for a robot below one metre
+//   poses that differ by 20 mm or 6 degrees             8 mm or 2 degrees
 //   freedom less than half of the parameters            less than the parameters
 //   held-out error 3 x the fitted one                   1.5 x; whole regions held out: 3 x
 //                                                       scatter in one direction 5 x that across it
@@ -19,6 +20,8 @@
 //                                                       15 degrees; of a fixed one 0.2 m, 30 degrees
 //   the pose in question is known to 20 mm only         to 5 mm, also over the limits of the joints; a
 //                                                       direction of it not at all
+//                                                       a frame outside of the URDF 0.3 m from where the
+//                                                       configuration says it is
 //                                                       a parameter ended at a bound
 //                                                       a parameter known to 5 degrees, 20 mm, 5 %
 //                                                       or 20 px only

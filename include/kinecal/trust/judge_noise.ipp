@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "kinecal/trust/judge.hpp"
@@ -24,6 +25,20 @@ namespace kinecal::detail {
   if (unit == "px") return {4.0, 12.0};
   const double part = size > 0.0 ? std::min(1.0, size / kMetre) : 1.0;
   return {0.008 * part, 0.02 * part};
+}
+
+/// Limits of the difference of two poses' rotations, radians: markers are seen to a degree, in a bad light to two.
+inline constexpr Limits kPoseAngles{2.0 * std::numbers::pi / 180.0, 6.0 * std::numbers::pi / 180.0};
+
+/// Poses without a sigma: their distances have the limits of points, their angles kPoseAngles.
+/// @param size  of the robot, metres
+inline void judge_poses(const BlockNoise& noise, double size, Judgement& judgement) {
+  const Limits distances = distance_limits("m", size);
+  const Grade grade = std::max(distances.judged(noise.distance), kPoseAngles.judged(noise.angle));
+  if (grade == Grade::good) return;
+  judgement.add(grade, "error block '" + noise.block + "': poses differ by " +
+                           reading(noise.distance, "m") + " and " + reading(noise.angle, "rad") +
+                           "; the model does not fit these samples");
 }
 
 /// A sigma is a claim about residuals.  They may be larger because the model is not as good as the sensors: that
@@ -80,6 +95,8 @@ inline void judge_noise(const Assessment& step, Judgement& judgement) {
       judgement.add(limits.grade(distance),
                     "error block '" + noise.block + "': residuals show distances of " +
                         reading(distance, noise.unit) + "; the model does not fit these samples");
+    } else {
+      judge_poses(noise, step.size, judgement);
     }
   }
 }

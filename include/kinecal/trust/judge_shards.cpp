@@ -27,6 +27,8 @@ void add_drawn(const Assessment& drawn, Assessment& all) {
     all.noise[t].repeats_freedom = whole.noise[t].repeats_freedom;
     all.noise[t].along = whole.noise[t].along;
     all.noise[t].across = whole.noise[t].across;
+    all.noise[t].distance = whole.noise[t].distance;
+    all.noise[t].angle = whole.noise[t].angle;
     all.noise[t].own = whole.noise[t].own;
     all.noise[t].own_freedom = whole.noise[t].own_freedom;
   }

@@ -78,6 +78,33 @@ inline void judge_changes(const CalibrationStep& step, const CalibrationResult& 
       {Remedy::Kind::hold});
 }
 
+/// Frames that are not in the URDF, and ended far from where the configuration says they are.  Nobody misjudges by so
+/// much where a part is: something else is wrong and looks like that, or the initial value is.
+/// @param size  of the robot, metres
+inline void judge_given_places(const AnyProblem& problem, const ParameterTable& table, double size,
+                               Judgement& judgement) {
+  constexpr double kFar = 0.3, kOfDistance = 0.1;  // metres, for a robot of a metre
+  for (const std::string& frame : problem.frames()) {
+    if (problem.robot().has_joint(frame)) continue;
+    Vector3<double> given = Vector3<double>::Zero(), found = Vector3<double>::Zero();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int p = table.find(parameter_name(frame, kFrameAxes[axis]));
+      if (p < 0) continue;
+      given(static_cast<Eigen::Index>(axis)) = table[p].initial;
+      found(static_cast<Eigen::Index>(axis)) = table[p].value;
+    }
+    const double by = (found - given).norm();
+    const double of_robot = kFar * (size > 0.0 ? std::min(1.0, size) : 1.0);
+    if (given.isZero() || by < std::max(of_robot, kOfDistance * given.norm())) continue;
+    judgement.add(Grade::use_with_care,
+                  "'" + frame + "' ended " + reading(by, "m") +
+                      " from where the configuration says it is; is that initial value wrong, or "
+                      "has the frame absorbed another mistake, such as the sign of an axis?",
+                  {Remedy::Kind::mend, "mend the initial value of '" + frame +
+                                           "', or leave it out if nobody measured it"});
+  }
+}
+
 /// Sag and play that are surely negative: no joint yields against its load.
 inline void judge_signs(const CalibrationStep& step, const CalibrationResult& result,
                         const Assessment& assessment, Judgement& judgement) {

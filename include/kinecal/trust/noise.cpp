@@ -66,6 +66,21 @@ void detail::set_directions(const Eigen::MatrixXd& residuals, BlockNoise& noise)
   noise.across = sigma(along.rows() - 2);
 }
 
+void detail::set_pose_errors(const Term& term, const Eigen::MatrixXd& residuals,
+                             BlockNoise& noise) {
+  if (!term.pose_scales || residuals.cols() == 0 || !(noise.freedom > 0.0)) return;
+  const double used = std::sqrt(static_cast<double>(residuals.size()) / noise.freedom);
+  const auto typical = [&](const Eigen::MatrixXd& rows, double scale) {
+    const Eigen::VectorXd norms = rows.colwise().norm();
+    const double rms = norms.norm() / std::sqrt(static_cast<double>(norms.size()));
+    const double robust =
+        std::sqrt(3.0) * robust_sigma({norms.data(), norms.data() + norms.size()}, 3);
+    return scale > 0.0 ? used * std::min(rms, robust) * noise.unit_sigma / scale : 0.0;
+  };
+  noise.distance = typical(residuals.topRows<3>(), term.pose_scales->per_metre);
+  noise.angle = typical(residuals.bottomRows<3>(), term.pose_scales->per_radian);
+}
+
 double prior_variance(const std::vector<BlockNoise>& noise) {
   double squares = 0.0, freedom = 0.0;
   bool given = true;
@@ -112,6 +127,7 @@ std::vector<BlockNoise> estimate_noise(const AnyProblem& problem, const LinearFi
       }
     }
     detail::set_directions(residuals, noise.back());
+    detail::set_pose_errors(term, residuals, noise.back());
   }
   return noise;
 }

@@ -32,6 +32,8 @@ struct BlockNoise {
   double repeats = 0.0;          ///< sigma among readings of a pose, in `unit`; 0: not known
   double repeats_freedom = 0.0;  ///< its degrees of freedom
   double unit_sigma = 1.0;       ///< residual in `unit` of a weighted residual of one
+  double distance = 0.0;         ///< rms of poses, robust, metres; 0: the block compares no poses
+  double angle = 0.0;            ///< the same of their rotations, radians
 
   /// Standard deviation of a weighted residual component: 1 if the given sigma is right.
   [[nodiscard]] double weighted() const { return sigma / unit_sigma; }
@@ -67,6 +69,11 @@ namespace detail {
 [[nodiscard]] double prior_variance(const std::vector<BlockNoise>& noise);
 
 namespace detail {
+/// Sets `distance` and `angle` of noise of poses.  Each is the smaller of two estimates, of all features and from the
+/// median, so that a few bad captures do not count.
+/// @param residuals  (6 x features) weighted
+void set_pose_errors(const Term& term, const Eigen::MatrixXd& residuals, BlockNoise& noise);
+
 /// Sets `along` and `across` of noise whose features have two or three components.
 /// @param residuals  (components x features) weighted
 void set_directions(const Eigen::MatrixXd& residuals, BlockNoise& noise);

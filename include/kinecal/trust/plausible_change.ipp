@@ -19,15 +19,28 @@ struct Limits {
   [[nodiscard]] Grade grade(double figure) const {
     return !(figure < refuse) ? Grade::do_not_use : Grade::use_with_care;
   }
+  /// The grade of any figure.
+  [[nodiscard]] Grade judged(double figure) const {
+    return exceeded(figure) ? grade(figure) : Grade::good;
+  }
 };
 
-/// Length of the longest chain from the base to a sensor, metres: sum of its links.
+/// Length of the longest chain from the base to a sensor, metres: sum of its links.  A pose that a controller reports
+/// stands for the arm that reaches it, about a metre.
 [[nodiscard]] inline double robot_size(const AnyProblem& problem) {
+  constexpr double kArm = 1.0;
+  const std::vector<std::string>& own = problem.own_poses();
+  const auto is_reported = [&](const ChainJoint& joint) {
+    return !joint.floating.empty() &&
+           std::find(own.begin(), own.end(), joint.floating) == own.end();
+  };
   double longest = 0.0;
   for (const MountedSensor& sensor : problem.sensors()) {
     for (const SampledChain& chain : sensor.chains()) {
+      const std::vector<ChainJoint>& joints = chain.chain().joints;
       double length = chain.chain().tail.translation.norm();
-      for (const ChainJoint& joint : chain.chain().joints) length += joint.fixed.translation.norm();
+      if (std::any_of(joints.begin(), joints.end(), is_reported)) length += kArm;
+      for (const ChainJoint& joint : joints) length += joint.fixed.translation.norm();
       longest = std::max(longest, length);
     }
   }

@@ -62,7 +62,9 @@ inline void read_noise(const JsonValue& report, std::int64_t format, StoredResul
     if (entry.find("held_out")) result.fitted[noise.block].held_out = entry.number("held_out");
     result.noise.push_back(noise);
   }
-  if (const auto common = report.find("common_noise")) {  // older versions did not write it
+  const auto common = report.find("common_noise");
+  result.knows_common = common.has_value();
+  if (common) {
     const auto number = [&](const char* key) {
       return common->find(key) ? common->number(key) : 0.0;
     };

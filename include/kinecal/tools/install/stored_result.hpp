@@ -54,6 +54,7 @@ struct StoredResult {
   std::vector<std::vector<std::pair<std::string, double>>> undetermined;
   std::vector<BlockNoise> noise;              ///< of each error block
   CommonNoise common;                         ///< that features of a pose share
+  bool knows_common = false;                  ///< report.json has it; of older versions it has not
   std::map<std::string, FittedBlock> fitted;  ///< by error block
   std::optional<PoseInQuestion> pose;         ///< the one that the robot needs, if that is known
   RecordedPoses poses;                        ///< those of the samples
