@@ -85,7 +85,7 @@ class SensorOfType final : public AnySensor {
 
   [[nodiscard]] std::string_view type() const override { return M::kType; }
   [[nodiscard]] std::span<const ParameterInfo> parameters() const override {
-    if constexpr (kParametersOf < M >> 0) return M::kParameters;
+    if constexpr (kParametersOf<M> != 0) return M::kParameters;
     return {};
   }
   [[nodiscard]] bool delivers(Quantity quantity) const override {
