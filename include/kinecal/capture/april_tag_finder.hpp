@@ -56,7 +56,7 @@ class AprilTagFinder {
   ///                                id, a size is not positive, or check_target() throws
   explicit AprilTagFinder(AprilTagSettings settings);
 
-  /// The tags in a view, or why there are none: not visible, a tag twice, too small, blurred, ...
+  /// The tags in a view, or why they are missing: not visible, a tag twice, too small, blurred, ...
   [[nodiscard]] Found find(const View& view) const;
 
   /// The settings.

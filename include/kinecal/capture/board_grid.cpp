@@ -11,7 +11,7 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// The nearest corner along an axis of the target, 0 or 1, and on the same line; nullopt if there is none.
+/// The nearest corner along an axis of the target, 0 or 1, and on the same line; nullopt if absent.
 [[nodiscard]] std::optional<std::size_t> next_along(const std::vector<TargetCorner>& corners,
                                                     std::size_t from, Eigen::Index axis) {
   constexpr double kStraight = 0.02;  // of the way

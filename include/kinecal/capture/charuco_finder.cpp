@@ -69,7 +69,7 @@ void for_each_pair(const CornerMap& corners, const F& f) {
   }
 }
 
-/// The shortest side of a square between two corners, pixels; infinite if there is none.
+/// The shortest side of a square between two corners, pixels; infinite if absent.
 [[nodiscard]] double shortest_of(const CornerMap& corners) {
   double least = std::numeric_limits<double>::infinity();
   for_each_pair(corners, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b, std::size_t) {

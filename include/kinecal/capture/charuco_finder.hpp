@@ -35,7 +35,7 @@ class CharucoFinder {
   ///                                check_target() throws
   explicit CharucoFinder(CharucoSettings settings);
 
-  /// The corners in a view, or why there are none.
+  /// The corners in a view, or why they are missing.
   [[nodiscard]] Found find(const View& view) const;
 
   /// The settings.

@@ -30,7 +30,7 @@ class CheckerboardFinder {
   ///                                positive, or check_target() throws
   explicit CheckerboardFinder(CheckerboardSettings settings);
 
-  /// The board in a view, or why there is none: not visible, visible twice, part of a larger board,
+  /// The board in a view, or why it is missing: not visible, visible twice, part of a larger board,
   /// too small, blurred, over-exposed, behind glare, at the border.
   [[nodiscard]] Found find(const View& view) const;
 

@@ -35,7 +35,7 @@ class CircleGridFinder {
   ///                                pose is wanted but it looks alike, or check_target() throws
   explicit CircleGridFinder(CircleGridSettings settings);
 
-  /// The grid in a view, or why there is none: not visible, too small, blurred.
+  /// The grid in a view, or why it is missing: not visible, too small, blurred.
   [[nodiscard]] Found find(const View& view) const;
 
   /// The settings.

@@ -28,7 +28,7 @@ class ImageMotion {
   /// @throws std::invalid_argument  if their sizes differ, or differ from those before
   void add(const GrayImage& earlier, const GrayImage& later);
 
-  /// Fraction of pixels in a box, outside an inner part, that ever changed; 0 if there are none.
+  /// Fraction of pixels in a box, outside an inner part, that ever changed; 0 if absent.
   [[nodiscard]] double share(const PixelBox& box, const PixelBox& except = {}) const;
 
  private:

@@ -76,7 +76,7 @@ LightPixel brightest_pixel(const LedLight& part, const PixelBox& except = {}) {
   return best;
 }
 
-/// Doubts about a light that is bright enough; empty if there are none.
+/// Doubts about a light that is bright enough; empty if absent.
 /// @param whole  the accumulated differences of the whole image
 std::string led_doubt(const LightBlob& blob, const LedSpot& spot, const LedLight& part,
                       const Image<std::int32_t>& whole) {

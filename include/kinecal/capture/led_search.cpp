@@ -128,7 +128,7 @@ std::string LedSearch::weak(std::size_t led) const {
          reading(finder_.max_error, "m");
 }
 
-/// The point of an LED, or why there is none.
+/// The point of an LED, or why it is missing.
 std::string LedSearch::place(std::size_t led, Vector3<double>& p_camera) const {
   const Tracked& tracked = leds_[led];
   if (!tracked.hopeless.empty()) return tracked.hopeless;

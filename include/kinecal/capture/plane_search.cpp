@@ -52,7 +52,7 @@ PlanePoints some_points(std::span<const Vector3<double>> points, std::size_t cou
   return some;
 }
 
-/// The dominant plane of some of the points, or why there is none.
+/// The dominant plane of some of the points, or why it is missing.
 ScoredPlane dominating_plane(const PlanePoints& points, const PlaneSearch& search, bool by_prior,
                              std::string& problem) {
   const auto share = [&](const ScoredPlane& plane) {

@@ -35,11 +35,11 @@ struct Region {
 struct RegionPoints {
   std::vector<Vector3<double>> points;  ///< (3) metres, in the region's frame
   std::vector<std::size_t> indices;     ///< of each in the cloud
-  std::string problem;                  ///< why there are none
+  std::string problem;                  ///< why they are missing
 };
 
 /// The pose of a view's camera in a region's frame.
-/// @param[out] problem  why there is none: missing joints
+/// @param[out] problem  why it is missing: missing joints
 [[nodiscard]] std::optional<Pose<double>> pose_in(const Region& region, const View& view,
                                                   std::string& problem);
 

@@ -77,7 +77,7 @@ concept RobotLamp = requires(L& lamp, int code) {
 };
 
 /// Finds features of a target in a view.  Does not throw if it finds nothing.
-///   finder.find(view)  observations of two or more sensors, or why there are none
+///   finder.find(view)  observations of two or more sensors, or why they are missing
 template <class F>
 concept Finder = requires(const F& finder, const View& view) {
   { finder.find(view) } -> std::same_as<Found>;

@@ -29,7 +29,7 @@ struct CornerAxes {
 
 /// The saddle near a place, to a fraction of a pixel.
 /// @param reach  how far from it to search, of the axes
-/// @returns      nullopt if there is none
+/// @returns      nullopt if absent
 [[nodiscard]] std::optional<Eigen::Vector2d> find_saddle(const GrayImage& image,
                                                          const Eigen::Vector2d& near,
                                                          const CornerAxes& axes, double reach);

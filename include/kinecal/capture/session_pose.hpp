@@ -33,7 +33,7 @@ struct SessionOptions {
 struct FinderOutcome {
   std::string finder;  ///< its name
   View view;           ///< that it searched; without image if it was never still
-  Found found;         ///< its features, or why there are none
+  Found found;         ///< its features, or why they are missing
 };
 
 /// The result of one pose.

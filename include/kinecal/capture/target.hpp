@@ -45,7 +45,7 @@ struct TargetCorner {
 [[nodiscard]] std::vector<Mark> marks_of(const std::vector<TargetCorner>& corners);
 
 /// Observations of the camera and of the chain that holds the target, one feature per corner, in
-/// the order of the ids, or one pose (target_pose.hpp); or why there are none.  Corners that are far from where the others put them
+/// the order of the ids, or one pose (target_pose.hpp); or why they are missing.  Corners that are far from where the others put them
 /// are left out (board_fit.hpp).
 /// @throws std::invalid_argument  if two corners have the same id
 [[nodiscard]] Found observed(const View& view, const TargetSettings& settings,

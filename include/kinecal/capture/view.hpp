@@ -41,8 +41,8 @@ struct View {
   Stamp stamp{};                     ///< of the exposure
   std::string frame;                 ///< the camera's optical frame: z forward, x right, y down
   std::optional<CameraInfo> camera;  ///< nullopt if the driver did not send it
-  GrayImage image;                   ///< empty if there is none
-  PointCloud points;                 ///< empty if there is none
+  GrayImage image;                   ///< empty if absent
+  PointCloud points;                 ///< empty if absent
   MeasuredJoints joints;             ///< of the robot at that moment
 };
 
@@ -62,7 +62,7 @@ struct GridLine {
 };
 
 /// The result of a finder: observations of two or more sensors with the same features, such as a
-/// camera and the chain that holds the board; or why there are none.
+/// camera and the chain that holds the board; or why they are missing.
 struct Found {
   std::vector<Observation> observations;  ///< empty if nothing was found
   std::string refusal;      ///< why not: "squares of 3.1 pixels; at least 8 are needed"

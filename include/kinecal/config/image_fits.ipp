@@ -57,7 +57,7 @@ inline void add_losses(Config& config) {
   }
 }
 
-/// The fit with an image of this kind; nullopt if there is none.
+/// The fit with an image of this kind; nullopt if absent.
 [[nodiscard]] inline std::optional<ImageFit> fit_image(Config config, const Robot& robot,
                                                        std::span<const Sample> samples,
                                                        const std::string& camera, ImageKind image) {

@@ -31,7 +31,7 @@ namespace {
 }
 
 /// Gives the models with features in a frame its link.
-/// @returns  the link on which they stood, the base for a model in the frame itself; empty if there is none
+/// @returns  the link on which they stood, the base for a model in the frame itself; empty if absent
 [[nodiscard]] std::string move_models(Config& config, const std::string& frame,
                                       std::span<const Sample> samples) {
   std::string parent;

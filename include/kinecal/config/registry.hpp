@@ -113,7 +113,7 @@ class Registry {
   void add(BlockEntry entry);
   /// @}
 
-  /// The type of this name; nullptr if there is none.
+  /// The type of this name; nullptr if absent.
   /// @{
   [[nodiscard]] const SensorEntry* sensor(const std::string& type) const;
   [[nodiscard]] const BlockEntry* block(const std::string& type) const;
@@ -129,7 +129,7 @@ class Registry {
 /// The registry of this program.
 [[nodiscard]] Registry& registry();
 
-/// The type of a model or error block: its own, or that of the registry; nullptr if there is none.
+/// The type of a model or error block: its own, or that of the registry; nullptr if absent.
 /// @{
 [[nodiscard]] const SensorEntry* entry_of(const ModelConfig& model);
 [[nodiscard]] const BlockEntry* entry_of(const BlockConfig& block);

@@ -236,7 +236,7 @@ concept ErrorBlock = detail::ReturnsVectorOfFixedSize<B> && detail::IsResidualOf
 template <class B>
 [[nodiscard]] std::array<ParameterInfo, kParametersOfBlock<B>> parameters_of(const B& block) {
   std::array<ParameterInfo, kParametersOfBlock<B>> infos{};
-  if constexpr (kParametersOfBlock < B >> 0) infos = B::kParameters;
+  if constexpr (kParametersOfBlock<B> != 0) infos = B::kParameters;
   if constexpr (requires { block.initial(); }) {
     for (std::size_t i = 0; i < infos.size(); ++i) infos[i].initial = block.initial()[i];
   }

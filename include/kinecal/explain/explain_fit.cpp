@@ -122,7 +122,7 @@ class Weighing {
       all.push_back({lists[i], *std::move(fits[i]), cost, text_of(lists[i])});
     }
   }
-  /// Lists in the order of their rough costs; in that of the lists, where there are none.
+  /// Lists in the order of their rough costs; in that of the lists where there is no rough cost.
   [[nodiscard]] static Together by_rough_cost(const Refits& refits, Together lists) {
     std::vector<std::pair<double, std::size_t>> order(lists.size());
     for_each_piece(static_cast<int>(lists.size()), number_of_threads(0), [&](int i, int) {

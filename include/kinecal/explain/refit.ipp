@@ -123,7 +123,7 @@ class Refits {
     const auto other = replaced(some);
     return other ? solved(*other) : std::nullopt;
   }
-  /// The free parameters of the last step that may end anywhere: poses that nobody knows.  All, if there are none.
+  /// The free parameters of the last step that may end anywhere: poses that nobody knows.  All, if no pose is unknown.
   [[nodiscard]] FreeSet unknown() const {
     constexpr double kAnywhere = 1e9;
     const CalibrationStep& last = calibration_->steps.back();

@@ -31,7 +31,7 @@ namespace {
   return all;
 }
 
-/// The camera of pixels that owns all of these parameters; empty if there is none.
+/// The camera of pixels that owns all of these parameters; empty if absent.
 [[nodiscard]] std::string owning_camera(const AnyProblem& problem,
                                         const std::vector<int>& parameters) {
   for (const MountedSensor& sensor : problem.sensors()) {

@@ -50,7 +50,7 @@ class JointReading {
   /// Gravity on the joint, with all links that it moves: torque about its axis, N m, or force along
   /// it, N; positive if it pulls towards larger positions.
   [[nodiscard]] virtual double load() const = 0;
-  /// The same of one kilogram at the origin of a link.
+  /// Gravity on the joint of one kilogram at the origin of a link; unit and sign as load().
   [[nodiscard]] virtual double load_of(const std::string& link) const = 0;
 };
 
@@ -62,10 +62,10 @@ enum class ModelPartner { none, joint, link };
 struct GearRatio {
   static constexpr std::array<ParameterInfo, 1> kParameters = {
       {{"gear_ratio", "1"}}};                                          ///< relative
-  static constexpr std::array<std::string_view, 1> kFormulas = {"q"};  ///< effects
+  static constexpr std::array<std::string_view, 1> kFormulas = {"q"};  ///< text of operator()
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
-  /// Effects of the parameters.
+  /// What is added to the position per unit of each parameter.
   [[nodiscard]] std::array<double, 1> operator()(const JointReading& joint) const {
     return {joint.position()};
   }
@@ -75,9 +75,9 @@ struct GearRatio {
 struct EccentricEncoder {
   static constexpr std::array<ParameterInfo, 2> kParameters = {
       {{"eccentric_sin", "rad"}, {"eccentric_cos", "rad"}}};  ///< amplitudes
-  static constexpr std::array<std::string_view, 2> kFormulas = {"sin(q)",
-                                                                "(cos(q) - 1)"};  ///< effects
-  /// Effects of the parameters.
+  static constexpr std::array<std::string_view, 2> kFormulas = {
+      "sin(q)", "(cos(q) - 1)"};  ///< text of operator()
+  /// What is added to the position per unit of each parameter.
   [[nodiscard]] std::array<double, 2> operator()(const JointReading& joint) const {
     return {std::sin(joint.position()), std::cos(joint.position()) - 1.0};
   }
@@ -88,9 +88,9 @@ struct EccentricEncoder {
 struct SecondHarmonic {
   static constexpr std::array<ParameterInfo, 2> kParameters = {
       {{"second_harmonic_sin", "rad"}, {"second_harmonic_cos", "rad"}}};  ///< amplitudes
-  static constexpr std::array<std::string_view, 2> kFormulas = {"sin(2 q)",
-                                                                "(cos(2 q) - 1)"};  ///< effects
-  /// Effects of the parameters.
+  static constexpr std::array<std::string_view, 2> kFormulas = {
+      "sin(2 q)", "(cos(2 q) - 1)"};  ///< text of operator()
+  /// What is added to the position per unit of each parameter.
   [[nodiscard]] std::array<double, 2> operator()(const JointReading& joint) const {
     return {std::sin(2.0 * joint.position()), std::cos(2.0 * joint.position()) - 1.0};
   }
@@ -102,28 +102,28 @@ struct Sag {
   static constexpr std::array<ParameterInfo, 1> kParameters = {
       {{"sag", "rad/Nm"}}};  ///< compliance
   static constexpr std::array<std::string_view, 1> kFormulas = {
-      "load (gravity about the axis, N m)"};    ///< effects
-  static constexpr bool kNeedsMasses = true;    ///< those of the URDF
-  static constexpr bool kNeverNegative = true;  ///< all of them
+      "load (gravity about the axis, N m)"};    ///< text of operator()
+  static constexpr bool kNeedsMasses = true;    ///< needs link masses in the URDF
+  static constexpr bool kNeverNegative = true;  ///< parameters cannot be negative
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
-  /// Effects of the parameters.
+  /// What is added to the position per unit of each parameter.
   [[nodiscard]] std::array<double, 1> operator()(const JointReading& joint) const {
     return {joint.load()};
   }
 };
 
-/// The same for the unknown mass of one link: compliance times mass.
+/// Sag under the unknown mass of one link, such as a tool: compliance times that mass.
 struct LinkSag {
   static constexpr std::array<ParameterInfo, 1> kParameters = {
-      {{"link_sag", "rad kg/Nm"}}};  ///< of it
+      {{"link_sag", "rad kg/Nm"}}};  ///< compliance times mass
   static constexpr std::array<std::string_view, 1> kFormulas = {
-      "load of 1 kg there (N m)"};                              ///< effects
+      "load of 1 kg there (N m)"};                              ///< text of operator()
   static constexpr ModelPartner kPartner = ModelPartner::link;  ///< the link with the mass
-  static constexpr bool kNeverNegative = true;                  ///< all of them
+  static constexpr bool kNeverNegative = true;                  ///< parameters cannot be negative
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
-  /// Effects of the parameters.
+  /// What is added to the position per unit of each parameter.
   [[nodiscard]] std::array<double, 1> operator()(const JointReading& joint,
                                                  const std::string& link) const {
     return {joint.load_of(link)};
@@ -133,11 +133,12 @@ struct LinkSag {
 /// A joint that another one moves along: a wrist whose cable runs over the elbow, a parallelogram.
 struct Coupling {
   static constexpr std::array<ParameterInfo, 1> kParameters = {{{"coupling", "1"}}};  ///< share
-  static constexpr std::array<std::string_view, 1> kFormulas = {"q of that joint"};   ///< effects
+  static constexpr std::array<std::string_view, 1> kFormulas = {
+      "q of that joint"};                                        ///< text of operator()
   static constexpr ModelPartner kPartner = ModelPartner::joint;  ///< the joint that moves it
   /// True for joints that may have it: all.
   [[nodiscard]] static constexpr bool suits(JointType, bool) { return true; }
-  /// Effects of the parameters.
+  /// What is added to the position per unit of each parameter.
   [[nodiscard]] std::array<double, 1> operator()(const JointReading& joint,
                                                  const std::string& other) const {
     return {joint.position_of(other)};
@@ -148,11 +149,11 @@ struct Coupling {
 struct Backlash {
   static constexpr std::array<ParameterInfo, 1> kParameters = {{{"backlash", "rad"}}};  ///< the gap
   static constexpr std::array<std::string_view, 1> kFormulas = {
-      "(-1/2 after a motion up, 1/2 after one down)"};  ///< effects
-  static constexpr bool kNeverNegative = true;          ///< all of them
+      "(-1/2 after a motion up, 1/2 after one down)"};  ///< text of operator()
+  static constexpr bool kNeverNegative = true;          ///< parameters cannot be negative
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
-  /// Effects of the parameters.
+  /// What is added to the position per unit of each parameter.
   [[nodiscard]] std::array<double, 1> operator()(const JointReading& joint) const {
     return {-0.5 * joint.direction()};
   }
@@ -163,12 +164,12 @@ struct LoadBacklash {
   static constexpr std::array<ParameterInfo, 1> kParameters = {
       {{"load_backlash", "rad"}}};  ///< gap
   static constexpr std::array<std::string_view, 1> kFormulas = {
-      "(1/2 where gravity pulls up, else -1/2)"};  ///< effects
-  static constexpr bool kNeedsMasses = true;       ///< those of the URDF
-  static constexpr bool kNeverNegative = true;     ///< all of them
+      "(1/2 where gravity pulls up, else -1/2)"};  ///< text of operator()
+  static constexpr bool kNeedsMasses = true;       ///< needs link masses in the URDF
+  static constexpr bool kNeverNegative = true;     ///< parameters cannot be negative
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return !is_mimic; }
-  /// Effects of the parameters.
+  /// What is added to the position per unit of each parameter.
   [[nodiscard]] std::array<double, 1> operator()(const JointReading& joint) const {
     const double load = joint.load();
     return {load > 0.0 ? 0.5 : load < 0.0 ? -0.5 : 0.0};
@@ -180,10 +181,10 @@ struct MimicErrors {
   static constexpr std::array<ParameterInfo, 2> kParameters = {
       {{"mimic_multiplier", "1"}, {"mimic_offset", "rad"}}};  ///< added to the URDF's
   static constexpr std::array<std::string_view, 2> kFormulas = {"q of the joint that it mimics",
-                                                                "1"};  ///< effects
+                                                                "1"};  ///< text of operator()
   /// True for joints that may have it.
   [[nodiscard]] static constexpr bool suits(JointType, bool is_mimic) { return is_mimic; }
-  /// Effects of the parameters.
+  /// What is added to the position per unit of each parameter.
   [[nodiscard]] std::array<double, 2> operator()(const JointReading& joint) const {
     return {joint.position(), 1.0};
   }
@@ -192,7 +193,7 @@ struct MimicErrors {
 /// How much later a sensor measured than the joints: of each sensor, on all joints that move it.
 struct SensorLag {
   static constexpr std::array<ParameterInfo, 1> kParameters = {{{"lag", "s"}}};  ///< the time
-  /// Effects of the parameters.
+  /// What is added to the position per unit of each parameter.
   [[nodiscard]] std::array<double, 1> operator()(const JointReading& joint) const {
     return {joint.velocity()};
   }

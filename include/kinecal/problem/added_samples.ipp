@@ -120,11 +120,11 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
                                     in_order ? *in_order->observation(first) : *recorded);
     if (!labels.empty()) added.labels.emplace(t, std::move(labels));
   }
-  auto& [layout, of_layout] =
-      *layouts_.try_emplace(std::move(row.layout), OfLayout{layouts_.size()}).first;
-  add_to_batch(of_layout.index, layout, row.numbers);
-  added.fingerprint = detail::fingerprint_of(of_layout.index, row.numbers);
-  ++of_layout.samples;
+  auto& [layout, use] =
+      *layouts_.try_emplace(std::move(row.layout), LayoutUse{layouts_.size()}).first;
+  add_to_batch(use.index, layout, row.numbers);
+  added.fingerprint = detail::fingerprint_of(use.index, row.numbers);
+  ++use.samples;
   residuals_ += added.residuals;
   samples_.push_back(std::move(added));
   if (own_poses_.empty()) return;
@@ -153,7 +153,7 @@ KINECAL_INLINE void AnyProblem::exclude(const std::set<int>& samples) {
   samples_ = std::move(kept);
   poses_of_samples_ = std::move(poses);
   const std::vector<int> left = renumber_in_batches(numbers);
-  for (auto& [layout, of_layout] : layouts_) of_layout.samples = left[of_layout.index];
+  for (auto& [layout, use] : layouts_) use.samples = left[use.index];
 }
 
 KINECAL_INLINE FeatureLabel AnyProblem::feature(int term, int sample, std::ptrdiff_t i) const {
@@ -165,11 +165,11 @@ KINECAL_INLINE FeatureLabel AnyProblem::feature(int term, int sample, std::ptrdi
 
 KINECAL_INLINE int AnyProblem::samples_of(int term, std::size_t terms) const {
   int n = 0;
-  for (const auto& [layout, of_layout] : layouts_) {
+  for (const auto& [layout, use] : layouts_) {
     const auto& places = layout.terms;
     const auto is_its = [&](const detail::TermLayout& place) { return place.term == term; };
     const bool applies = std::any_of(places.begin(), places.end(), is_its);
-    if (applies && places.size() >= terms) n += of_layout.samples;
+    if (applies && places.size() >= terms) n += use.samples;
   }
   return n;
 }

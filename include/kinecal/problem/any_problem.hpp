@@ -228,12 +228,12 @@ class AnyProblem {
   std::vector<AddedSample> samples_;
   int residuals_ = 0;  ///< of all samples
 
-  /// Samples of one layout.
-  struct OfLayout {
+  /// A layout and how many samples have it.
+  struct LayoutUse {
     std::size_t index = 0;  ///< in order of first use
     int samples = 0;        ///< number of them
   };
-  std::map<detail::SampleLayout, OfLayout> layouts_;
+  std::map<detail::SampleLayout, LayoutUse> layouts_;
 };
 
 }  // namespace kinecal

@@ -115,8 +115,8 @@ inline void add_touched(const MountedSensor& sensor, const std::vector<std::size
 
 KINECAL_INLINE std::vector<int> AnyProblem::touched_parameters() const {
   std::set<int> touched;
-  for (const auto& [layout, of_layout] : layouts_) {
-    if (of_layout.samples == 0) continue;  // they were excluded
+  for (const auto& [layout, use] : layouts_) {
+    if (use.samples == 0) continue;  // they were excluded
     for (const detail::TermLayout& place : layout.terms) {
       const Term& used = term(place.term);
       touched.insert(used.parameters.begin(), used.parameters.end());

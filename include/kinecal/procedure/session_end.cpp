@@ -118,7 +118,7 @@ namespace {
   return "the verdict is 'do not use': " + judgement.reasons.front();
 }
 
-/// A reason of the verdict that more poses cure; empty if there is none.
+/// A reason of the verdict that more poses cure; empty if absent.
 [[nodiscard]] std::string cured_by_poses(const Judgement& judgement) {
   for (std::size_t i = 0; i < judgement.reasons.size(); ++i) {
     if (judgement.remedies[i].kind != Remedy::Kind::record) continue;

@@ -102,7 +102,7 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows,
   return has_own ? std::string_view(chart.section) : "errors";
 }
 
-/// A section: its figures, then its charts; empty if there are none.
+/// A section: its figures, then its charts; empty if absent.
 [[nodiscard]] inline std::string section(std::string_view id, std::string_view title,
                                          const std::string& figures,
                                          const std::vector<Chart>& charts) {

@@ -61,7 +61,7 @@ namespace {
   return parameters;
 }
 
-/// Parameters that might as well be held, or that samples do not determine; empty if there are none.
+/// Parameters that might as well be held, or that samples do not determine; empty if absent.
 [[nodiscard]] std::string hold(const Findings& findings) {
   if (findings.assessments.empty()) return {};
   const Assessment& step = findings.assessments.back();

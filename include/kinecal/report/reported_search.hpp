@@ -15,7 +15,7 @@ struct ReportedSearchStep {
   double held_out = 0.0;   ///< the same, of poses held out; not finite: a fold leaves something
                            ///< undetermined
   double deviation = 0.0;  ///< standard error of held_out
-  double region = 0.0;     ///< of regions held out; 0: there are none
+  double region = 0.0;     ///< of regions held out; 0: too few poses
   double certainty = 0.0;  ///< rise of the error on held-out poses without it alone, in its
                            ///< standard errors
   bool is_chosen = true;   ///< false: tried after the chosen ones, and not freed

@@ -19,7 +19,7 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// The problem solved last; nullptr if there is none.
+/// The problem solved last; nullptr if absent.
 [[nodiscard]] const CalibrationStep* last_step(const Calibration& calibration,
                                                const CalibrationResult& result) {
   if (calibration.steps.empty()) return nullptr;

@@ -25,7 +25,7 @@ template <class Decode>
 [[nodiscard]] auto pipe_image(const JsonValue& image, Decode&& decode) {
   if (!image.is_text()) {
     const auto bytes = from_base64(image.text("base64"));
-    if (!bytes) throw JsonError("the base64 has a character that is none");
+    if (!bytes) throw JsonError("the base64 has a character outside its alphabet");
     return decode(*bytes, "the image");
   }
   const std::string name = image.as_text();

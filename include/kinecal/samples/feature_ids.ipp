@@ -12,7 +12,7 @@
 
 namespace kinecal::detail {
 
-/// The ids of an observation in the order of its features; empty if there are none.
+/// The ids of an observation in the order of its features; empty if absent.
 /// @throws SampleError  if some features lack an id, or two have the same
 [[nodiscard]] inline std::vector<int> ids_of(const Observation& seen) {
   std::vector<int> ids;

@@ -90,7 +90,7 @@ class ObservationPairs {
     return compared(ids);
   }
 
-  /// The ids that some block can compare, ascending; if there are none, all ids, so that features
+  /// The ids that some block can compare, ascending; without any, all ids, so that features
   /// are not paired by place.
   [[nodiscard]] std::vector<int> compared(
       const std::map<std::size_t, std::vector<int>>& ids) const {

@@ -126,7 +126,7 @@ struct Sample {
     return of(joint, joint_moves);
   }
 
-  /// The observation of a sensor; nullptr if there is none.
+  /// The observation of a sensor; nullptr if absent.
   [[nodiscard]] const Observation* observation(const std::string& sensor) const {
     for (const Observation& o : observations) {
       if (o.sensor == sensor) return &o;

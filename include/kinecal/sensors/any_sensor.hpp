@@ -34,7 +34,7 @@ class AnySensor {
   /// @throws SettingsError
   [[nodiscard]] virtual std::vector<double> settings(const Observation& seen) const = 0;
   /// Values of its parameters before the first step.
-  /// @param settings  of the first observation; empty if there are none
+  /// @param settings  of the first observation; empty if absent
   [[nodiscard]] virtual std::vector<double> initial(std::span<const double> settings) const = 0;
   /// The part of a recorded point to keep.
   /// @throws SettingsError
@@ -85,7 +85,7 @@ class SensorOfType final : public AnySensor {
 
   [[nodiscard]] std::string_view type() const override { return M::kType; }
   [[nodiscard]] std::span<const ParameterInfo> parameters() const override {
-    if constexpr (kParametersOf < M >> 0) return M::kParameters;
+    if constexpr (kParametersOf<M> != 0) return M::kParameters;
     return {};
   }
   [[nodiscard]] bool delivers(Quantity quantity) const override {

@@ -52,7 +52,7 @@ struct DepthCamera {
   using Corrected = CorrectedDepthCamera<Q>;
 
   /// The recorded settings: of the rectified image, from P; from K if P is zero.
-  /// @throws SettingsError  if there are none or they are impossible
+  /// @throws SettingsError  if they are missing or they are impossible
   [[nodiscard]] static std::array<double, 6> settings(const Observation& seen) {
     const CameraInfo& info = camera_info_of(seen);
     std::array<double, 6> s = {info.p[0], info.p[5],     info.p[2],

@@ -29,7 +29,7 @@ namespace detail {
   return convex;
 }
 
-/// The name of a term whose loss ignores half of its features or more; empty if there is none.
+/// The name of a term whose loss ignores half of its features or more; empty if absent.
 /// Such a "minimum" is a plateau.
 [[nodiscard]] inline std::string mostly_left_out(AnyEvaluator& evaluator, ParameterValues values) {
   const AnyProblem& problem = evaluator.problem();

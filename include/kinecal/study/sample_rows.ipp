@@ -77,7 +77,7 @@ class ChangingSamples {
   }
 
   /// The samples with features of one sensor changed.
-  /// @param change  of a sample, an observation and a place: nullopt if there is none
+  /// @param change  of a sample, an observation and a place: nullopt if absent
   template <class Change>
   [[nodiscard]] std::vector<Sample> with(const std::string& sensor, const Change& change,
                                          double factor) const {

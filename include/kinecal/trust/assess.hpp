@@ -88,7 +88,7 @@ struct AssessOptions {
 
 namespace detail {
 
-/// The last assessment's entry for an error block; nullptr if there is none.
+/// The last assessment's entry for an error block; nullptr if absent.
 template <class T>
 [[nodiscard]] const T* of_block(const std::vector<Assessment>& assessments,
                                 std::vector<T> Assessment::*list, const std::string& name) {

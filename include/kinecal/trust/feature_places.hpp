@@ -20,7 +20,7 @@ struct PlacedFeature {
 /// True if a feature counts: its numbers are finite.
 [[nodiscard]] bool is_seen(const Feature& feature);
 
-/// The feature of an observation that a residual belongs to; nullptr if there is none.
+/// The feature of an observation that a residual belongs to; nullptr if absent.
 [[nodiscard]] const Feature* observed_feature(const Observation& seen, const FeatureLabel& label);
 
 /// The places of a problem's features for given parameters.

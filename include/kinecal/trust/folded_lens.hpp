@@ -1,5 +1,5 @@
 // Lenses that fold over inside the image: from some radius on, the image of points that are farther from the
-// axis comes nearer to the center again, or there is none.
+// axis comes nearer to the center again, or is missing.
 //
 // Polynomials do so where no feature held them.  Whoever rectifies such an image, or projects into it, gets one place
 // for two directions.

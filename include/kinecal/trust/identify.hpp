@@ -33,7 +33,7 @@ struct IdentifyStep {
   int candidate = -1;     ///< by number; -1: the base alone
   double fitted = 0.0;    ///< root of the mean squared distance after it
   double held_out = 0.0;  ///< the same, of poses held out
-  double region = 0.0;    ///< the same, of regions held out; 0: there are none
+  double region = 0.0;    ///< the same, of regions held out; 0: too few poses
   double certainty =
       0.0;  ///< rise of the error on held-out poses without it alone, in its standard errors
   std::vector<int> alike;  ///< other candidates that explain the same

@@ -70,7 +70,7 @@ struct JointTrack {
   return tracks;
 }
 
-/// The step of which all positions of a joint are multiples, apart from an offset; 0 if there is none.
+/// The step of which all positions of a joint are multiples, apart from an offset; 0 if absent.
 [[nodiscard]] inline double rounding_step(const JointTrack& track) {
   constexpr double kSame = 1e-9, kTolerance = 0.02;
   constexpr std::size_t kFew = 8;

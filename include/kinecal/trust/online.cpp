@@ -11,9 +11,9 @@ namespace kinecal {
 
 OnlineCalibration::OnlineCalibration(MakeProblem make, const FreeSet& free, ParameterValues values,
                                      const FrameOnRobot& frame, const FrameOnRobot& in)
-    : inside_(new Inside{std::move(make), free, {values.begin(), values.end()}, frame, in}) {
-  inside_->problem->check(free);
-  (void)detail::PoseDerivative(*inside_->problem, free, inside_->values, frame, in);
+    : impl_(new Impl{std::move(make), free, {values.begin(), values.end()}, frame, in}) {
+  impl_->problem->check(free);
+  (void)detail::PoseDerivative(*impl_->problem, free, impl_->values, frame, in);
 }
 
 OnlineCalibration::~OnlineCalibration() = default;
@@ -21,24 +21,24 @@ OnlineCalibration::OnlineCalibration(OnlineCalibration&&) noexcept = default;
 OnlineCalibration& OnlineCalibration::operator=(OnlineCalibration&&) noexcept = default;
 
 void OnlineCalibration::expect(std::vector<Sample> poses) {
-  inside_->ahead = std::move(poses);
+  impl_->ahead = std::move(poses);
 }
 
 OnlineState OnlineCalibration::add(const Sample& sample) {
   OnlineState state;
-  state.fits = inside_->add_if_it_fits(sample, state);
-  state.samples = static_cast<int>(inside_->samples.size());
-  state.noise = std::sqrt(inside_->noise2);
-  if (inside_->hessian.size() > 0) inside_->set_pose(state);
+  state.fits = impl_->add_if_it_fits(sample, state);
+  state.samples = static_cast<int>(impl_->samples.size());
+  state.noise = std::sqrt(impl_->noise2);
+  if (impl_->hessian.size() > 0) impl_->set_pose(state);
   return state;
 }
 
 const std::vector<double>& OnlineCalibration::values() const {
-  return inside_->values;
+  return impl_->values;
 }
 
 std::optional<NextMove> OnlineCalibration::next_move(double step) const {
-  const Inside& known = *inside_;
+  const Impl& known = *impl_;
   if (known.samples.empty() || known.freedom <= 0) return std::nullopt;
   if (!known.problem->own_poses().empty()) return std::nullopt;  // a person moves, too
   auto candidates = known.candidates(step);

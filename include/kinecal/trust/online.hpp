@@ -87,8 +87,8 @@ class OnlineCalibration {
   [[nodiscard]] std::optional<NextMove> next_move(double step = 0.4) const;
 
  private:
-  struct Inside;  // holds matrices: created and destroyed by one library
-  std::unique_ptr<Inside> inside_;
+  struct Impl;  // holds matrices: created and destroyed by one library
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace kinecal

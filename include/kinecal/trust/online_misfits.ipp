@@ -10,7 +10,7 @@
 
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/trust/f_distribution.hpp"
-#include "kinecal/trust/online_inside.ipp"
+#include "kinecal/trust/online_impl.ipp"
 
 namespace kinecal {
 
@@ -42,7 +42,7 @@ inline double stated_square(const AnyProblem& problem) {
 }  // namespace detail
 
 /// The worst sample, if it does not fit the others.
-inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator& evaluator) const {
+inline std::optional<std::size_t> OnlineCalibration::Impl::misfit(AnyEvaluator& evaluator) const {
   if (samples.size() < detail::kFewestToTest || freedom <= 0) return std::nullopt;
   std::vector<double> squares(samples.size(), 0.0), rows(samples.size(), 0.0);
   double all = problem->num_residuals();
@@ -77,7 +77,7 @@ inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator
 }
 
 /// A problem cannot drop a sample, so it is built again.
-inline void OnlineCalibration::Inside::leave_out(std::size_t sample) {
+inline void OnlineCalibration::Impl::leave_out(std::size_t sample) {
   samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(sample));
   numbers.erase(numbers.begin() + static_cast<std::ptrdiff_t>(sample));
   std::vector<std::vector<Pose<double>>> poses = problem->poses_of_samples();
@@ -87,7 +87,7 @@ inline void OnlineCalibration::Inside::leave_out(std::size_t sample) {
   problem->set_poses_of_samples(std::move(poses));
 }
 
-inline bool OnlineCalibration::Inside::add_if_it_fits(const Sample& sample, OnlineState& state) {
+inline bool OnlineCalibration::Impl::add_if_it_fits(const Sample& sample, OnlineState& state) {
   problem->add_sample(sample);
   samples.push_back(sample);
   numbers.push_back(++added);

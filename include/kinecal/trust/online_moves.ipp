@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "kinecal/trust/online_inside.ipp"
+#include "kinecal/trust/online_impl.ipp"
 #include "kinecal/trust/pose_in_base.ipp"
 
 namespace kinecal {
@@ -35,7 +35,7 @@ namespace detail {
 
 /// Moves of one joint from the pose of the last sample, with that sample moved.  Its measurements
 /// do not matter: information is that of the error-free problem.
-inline std::vector<std::pair<NextMove, Sample>> OnlineCalibration::Inside::candidates(
+inline std::vector<std::pair<NextMove, Sample>> OnlineCalibration::Impl::candidates(
     double step) const {
   const RobotState robot{*problem, values};
   const detail::PoseInBase of_frame(robot, frame), of_in(robot, in);

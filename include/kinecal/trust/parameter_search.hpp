@@ -25,7 +25,7 @@ struct SearchCandidate {
 struct SearchFit {
   double fitted = 0.0;     ///< of all poses
   double held_out = 0.0;   ///< of poses held out; infinite if a fold leaves something undetermined
-  double region = 0.0;     ///< of regions held out; 0: there are none
+  double region = 0.0;     ///< of regions held out; 0: too few poses
   double deviation = 0.0;  ///< standard error of held_out, by poses
   int columns = 0;         ///< free ones
 };

@@ -21,7 +21,7 @@ namespace kinecal {
 /// does: they are no matter of single samples.
 [[nodiscard]] bool explains_more(const Assessment& last);
 
-/// The ruined samples of a fit, in their order; empty if there are none, or too many.
+/// The ruined samples of a fit, in their order; empty if absent, or too many.
 [[nodiscard]] std::vector<CaptureError> ruined_captures(const Assessment& last);
 
 /// Fits repeatedly, without ruined samples, until none is found.

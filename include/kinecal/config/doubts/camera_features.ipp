@@ -21,7 +21,7 @@
 
 namespace kinecal::detail {
 
-/// The camera_info of the first sample with a size; nullptr if there is none.
+/// The camera_info of the first sample with a size; nullptr if absent.
 [[nodiscard]] inline const CameraInfo* sized_camera(const RecordedPoints& recorded,
                                                     std::span<const Sample> samples) {
   const Observation* seen = samples[recorded.samples.front()].observation(recorded.model.name);

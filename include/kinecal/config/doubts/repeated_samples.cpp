@@ -95,7 +95,7 @@ using RecordedNumbers = std::pair<std::vector<std::string>, std::vector<double>>
   return all;
 }
 
-/// The sensor that sees something else while another one sees the same; nullptr if there is none.
+/// The sensor that sees something else while another one sees the same; nullptr if absent.
 /// @param pixels  names of the sensors whose features are pixels
 [[nodiscard]] inline const Observation* contradiction(const Sample& a, const Sample& b,
                                                       const std::set<std::string>& pixels) {

@@ -16,7 +16,7 @@
 
 namespace kinecal::detail {
 
-/// Reads numbers of a BMP; outside of the file there are none.
+/// Reads numbers of a BMP, and none outside of the file.
 class BmpBytes {
  public:
   BmpBytes(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}

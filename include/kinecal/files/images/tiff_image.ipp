@@ -71,7 +71,7 @@ inline int ignore_tiff_warning(TIFF*, void*, const char*, const char*, va_list) 
 }
 #endif
 
-/// Opens a TIFF; nullptr if it is none.
+/// Opens a TIFF; nullptr for another file.
 [[nodiscard]] inline TIFF* open_tiff(TiffBytes& from) {
   const auto write = [](thandle_t, void*, tmsize_t) -> tmsize_t { return 0; };
   const auto close = [](thandle_t) { return 0; };

@@ -56,7 +56,7 @@ class DaeReader {
 
   [[nodiscard]] pugi::xml_node root() const { return document_.document_element(); }
 
-  /// The element of "#id"; a null node if there is none.
+  /// The element of "#id"; a null node if absent.
   [[nodiscard]] pugi::xml_node of(pugi::xml_attribute url) const {
     const std::string_view text = url.value();
     const auto found = by_id_.find(std::string(text.substr(text.starts_with('#') ? 1 : 0)));

@@ -34,7 +34,7 @@ struct MeshPlaces {
 
 /// The file of a mesh.
 /// @param name  package://..., file://..., or relative to the URDF
-/// @throws MeshError  if there is none, or it is outside its package
+/// @throws MeshError  if it is missing or outside its package
 [[nodiscard]] std::filesystem::path find_mesh(const std::string& name, const MeshPlaces& places);
 
 }  // namespace kinecal

@@ -10,7 +10,7 @@
 
 namespace kinecal::detail {
 
-/// Parses and removes the next number of a text; nullopt if there is none.
+/// Parses and removes the next number of a text; nullopt if absent.
 template <class T>
 [[nodiscard]] std::optional<T> next_number(std::string_view& text) {
   const std::size_t at = text.find_first_not_of(" \t\r\n");

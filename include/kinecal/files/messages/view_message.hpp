@@ -14,7 +14,7 @@ namespace kinecal::detail {
 /// Brightness of an Image (gray, colour, Bayer, YUV) or a CompressedImage (PNG, JPEG).  For 16
 /// bits, the upper 8 of those that the camera uses.  A Bayer mosaic is smoothed over 3x3 pixels,
 /// which gives each pixel the same share of each colour.
-/// @throws std::runtime_error  if the encoding is none of these, or the data is damaged
+/// @throws std::runtime_error  if it has another encoding, or the data is damaged
 [[nodiscard]] GrayImage gray_image(const MessageFields& message);
 
 /// Metres of an Image (32FC1: metres; 16UC1: millimetres) or a CompressedImage of either; NaN where

@@ -62,7 +62,7 @@ namespace {
 }
 
 /// The nearest rotation to a matrix with the digits of a file.
-/// @param wrong  set if it is none within 0.01
+/// @param wrong  set if none is within 0.01
 [[nodiscard]] Matrix3<double> nearest_rotation(const Matrix3<double>& m, std::string& wrong) {
   constexpr double kMostOff = 1e-2;
   const Eigen::JacobiSVD<Matrix3<double>> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);

@@ -54,7 +54,7 @@ struct PoseForm {
   [[nodiscard]] std::string columns_text() const;
 };
 
-/// The form with this name: "kuka"; nullopt if there is none.
+/// The form with this name: "kuka"; nullopt if absent.
 [[nodiscard]] std::optional<PoseForm> pose_form(std::string_view name);
 
 /// Names for pose_form(), without all of the orders of axes.

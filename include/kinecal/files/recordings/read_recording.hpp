@@ -16,7 +16,7 @@ namespace kinecal {
 struct Recording {
   /// Like the result of read_samples().  Sample::source of a bag is "path:number of the message".
   std::vector<Sample> samples;
-  std::string urdf;  ///< the last /robot_description; empty if there is none
+  std::string urdf;  ///< the last /robot_description; empty if absent
 };
 
 /// Reads YAML, samples of MoveIt Calibration or easy_handeye2, a ROS 1 bag, MCAP or a ROS 2 bag,

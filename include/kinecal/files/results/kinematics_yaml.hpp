@@ -28,7 +28,7 @@ namespace kinecal {
 /// The content of such a file, with UR's names if the file is UR's already or the robot has UR's six joints,
 /// which rotate about z.
 /// @param patches   as patch_urdf() takes them, of joints of the robot
-/// @param existing  content of the file that it replaces, whose hash it keeps; empty: there is none
+/// @param existing  content of the file that it replaces, whose hash it keeps; empty: absent
 /// @param file      its name, for messages
 /// @throws InputError  if what exists is not such a file, or is UR's and the robot is not
 [[nodiscard]] std::string kinematics_yaml(const Robot& robot,

@@ -50,7 +50,7 @@ inline constexpr std::string_view kFeatureId = "feature_id_";
 /// The parameters of one observation while it is read.
 class FeatureIdParameters {
  public:
-  /// @returns  the error; empty if there is none
+  /// @returns  the error; empty if absent
   [[nodiscard]] std::string add(std::string_view name, std::optional<double> value) {
     const std::string_view digits = name.substr(kFeatureId.size());
     std::size_t k = 0;
@@ -66,7 +66,7 @@ class FeatureIdParameters {
   }
 
   /// Gives features their ids, unless they already have ids.
-  /// @returns  the error; empty if there is none
+  /// @returns  the error; empty if absent
   [[nodiscard]] std::string apply(std::vector<Feature>& features) const {
     if (!starts_.empty() && starts_.rbegin()->first >= features.size()) {
       return fmt::format("{}{} is the id of feature {} of {}", kFeatureId, starts_.rbegin()->first,

@@ -218,7 +218,7 @@ inline constexpr auto kSampleChildren = [] {
   return node == SampleNode::conditions || node == SampleNode::poses;
 }
 
-/// The node under `parent` with this key; `unknown` if there is none.  List items have the key "".
+/// The node under `parent` with this key; `unknown` if absent.  List items have the key "".
 [[nodiscard]] constexpr SampleNode sample_child(SampleNode parent, std::string_view key) {
   if (parent == SampleNode::conditions) return SampleNode::condition;
   if (parent == SampleNode::poses) return SampleNode::pose;

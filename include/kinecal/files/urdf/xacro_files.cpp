@@ -29,7 +29,7 @@ namespace {
   return found;
 }
 
-/// The file of a package among the parents of a folder; nullopt if there is none.
+/// The file of a package among the parents of a folder; nullopt if absent.
 [[nodiscard]] std::optional<fs::path> in_package(const fs::path& folder, const std::string& package,
                                                  const std::string& inside) {
   for (const fs::path& parent : with_parents(folder)) {

@@ -36,7 +36,7 @@ namespace kinecal::detail {
   return is_config_scalar(node) ? "'" + text + "'" : "'" + node.tag + " " + text + "'";
 }
 
-/// Why a file is none of a kind: "this is a URDF, not a configuration", "the file is 'abc', not a map".
+/// Why a file is of another kind: "this is a URDF, not a configuration", "the file is 'abc', not a map".
 /// @param wanted  what its content must be
 [[nodiscard]] inline std::string describe_wrong_file(const YamlNode& content,
                                                      const std::string& kind,

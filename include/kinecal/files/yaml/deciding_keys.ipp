@@ -78,7 +78,7 @@ enum class KeyMeaning { other, distortion, size, spacing, unit };
 }
 
 /// "; did you mean 'size'?": the nearest known key, or else the nearest one of the same meaning;
-/// empty if there is none.  A limit or the name of a model is not meant by
+/// empty if absent.  A limit or the name of a model is not meant by
 /// what is none.
 template <class Names>
 [[nodiscard]] std::string meant_by_key(std::string_view key, const Names& known) {

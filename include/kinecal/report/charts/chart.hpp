@@ -60,7 +60,7 @@ inline constexpr std::size_t kMostMarks = 2000;
 
 /// The finite values, ascending.
 [[nodiscard]] std::vector<double> sorted_finite(std::span<const double> values);
-/// Quantile of sorted values, interpolated; NaN if there are none.
+/// Quantile of sorted values, interpolated; NaN if absent.
 /// @param share  0 to 1
 [[nodiscard]] double quantile(std::span<const double> sorted, double share);
 

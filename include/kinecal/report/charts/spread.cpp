@@ -21,7 +21,7 @@ namespace {
   return std::isfinite(ratio) && ratio > 0.0;
 }
 
-/// The ratio of a series; NaN if there is none.
+/// The ratio of a series; NaN if absent.
 [[nodiscard]] double ratio_of(const SpreadSeries& series, std::size_t parameter) {
   const bool has = parameter < series.ratios.size() && is_ratio(series.ratios[parameter]);
   return has ? series.ratios[parameter] : std::numeric_limits<double>::quiet_NaN();

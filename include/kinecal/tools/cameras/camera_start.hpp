@@ -1,10 +1,9 @@
-// What the views of a flat target say of a camera before anything is known of it: the focal length, whether it is
-// rather a pinhole or a fisheye, and where the target was.
+// Initial values of an uncalibrated camera from views of a flat target: focal length, pinhole or fisheye, and the
+// target's pose in each view.
 //
-// For each focal length of a grid, as a pinhole and as a fisheye, directions of the corners follow from their pixels, with
-// the principal point in the middle of the image; from these, by a homography, the pose of the target; and from that, how
-// far the corners are off.  The one with the smallest median is refined.  So nothing has to be guessed, and no view decides
-// alone.
+// A grid of focal lengths is tried, each as a pinhole and as a fisheye.  With the principal point in the middle of the
+// image, a focal length turns pixels into directions, and a homography gives the target's pose.  The guess with the
+// smallest median reprojection error is refined.  Nothing has to be guessed by the user, and no single view decides.
 // Source: Zhang, A Flexible New Technique for Camera Calibration, 2000 (poses from homographies).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -40,7 +40,7 @@ constexpr std::array<std::array<std::string_view, 2>, 6> kLenses = {
 
 /// The parameters of a camera that samples do not determine, or hardly.
 struct Undetermined {
-  std::string not_at_all, hardly;  ///< the first of each; empty: there is none
+  std::string not_at_all, hardly;  ///< the first of each; empty: absent
 };
 
 [[nodiscard]] Undetermined undetermined(const CalibrationStep& step, ParameterValues values,

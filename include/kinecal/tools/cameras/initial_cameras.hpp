@@ -9,7 +9,7 @@ namespace kinecal {
 
 /// The configuration of cameras on one body, which see a board that somebody holds.
 /// @param cameras  their names; the first one is the base
-/// @throws std::invalid_argument  if there is none, or two have the same name
+/// @throws std::invalid_argument  if it is missing, or two have the same name
 [[nodiscard]] std::string initial_cameras(const std::vector<std::string>& cameras);
 
 }  // namespace kinecal

@@ -13,7 +13,7 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// The first sample in which a camera has an image whose size was recorded; nullptr if there is none.
+/// The first sample in which a camera has an image whose size was recorded; nullptr if absent.
 [[nodiscard]] const Sample* sized_sample(const std::string& camera,
                                          const std::vector<Sample>& samples) {
   for (const Sample& sample : samples) {

@@ -13,7 +13,7 @@
 
 namespace kinecal::detail {
 
-/// The corners that both sensors have; none if there are none, or the target is not flat.
+/// The corners that both sensors have; empty for a target that is not flat.
 /// @param target, camera  names of sensors
 [[nodiscard]] inline TargetView target_view(const std::string& target, const std::string& camera,
                                             const Sample& given) {

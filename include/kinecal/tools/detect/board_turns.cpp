@@ -14,7 +14,7 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// Frame of a camera's features; empty if there are none.
+/// Frame of a camera's features; empty if absent.
 [[nodiscard]] std::string camera_frame(const std::string& camera,
                                        const std::vector<Sample>& samples) {
   for (const Sample& sample : samples) {
@@ -24,7 +24,7 @@ namespace {
   return {};
 }
 
-/// The first of these that the robot has; empty if there is none.
+/// The first of these that the robot has; empty if absent.
 [[nodiscard]] std::string link_among(const Robot& robot, const std::string& wanted,
                                      const std::string& other) {
   if (!wanted.empty()) return wanted;

@@ -53,7 +53,7 @@ void add_finder_notes(const std::vector<Look>& looks, Diagnostics& diagnostics) 
 DetectedSamples detect_all(const DetectionInput& input, const DetectionOptions& options,
                            Diagnostics& diagnostics) {
   const auto finders = [&input] {
-    std::vector<std::string> errors;  // were reported: there are none
+    std::vector<std::string> errors;  // already reported
     return make_finders(input, errors);
   };
   const LookOptions how{finders, detail::number_of_threads(options.threads), options.thumbnails,

@@ -80,7 +80,7 @@ inline std::size_t leave_out_rests(const RecordedSurvey& survey,
   });
 }
 
-/// The intervals that give views; an error if there are none, a note about those left out.
+/// The intervals that give views; an error without any, a note about those left out.
 [[nodiscard]] inline std::vector<Standstill> find_intervals(const RecordedSurvey& survey,
                                                             const std::vector<ViewTopics>& cameras,
                                                             const RecordingOptions& options,

@@ -58,7 +58,7 @@ class JointTracks {
   /// 60 ms of it: at least 4, of which the nearest before and after it are within 0.25 s.
   [[nodiscard]] JointsInMotion motion(Stamp stamp) const;
 
-  /// From the first to the last reading; nullopt if there is none.
+  /// From the first to the last reading; nullopt if absent.
   [[nodiscard]] std::optional<Standstill> span() const;
 
  private:

@@ -107,7 +107,7 @@ template <class T>
   return spread_out(within, kMost);
 }
 
-/// The view nearest to a moment; nullptr if there is none.
+/// The view nearest to a moment; nullptr if absent.
 /// @param views  sorted
 [[nodiscard]] inline const ViewStamp* nearest_view(const std::vector<ViewStamp>& views,
                                                    Stamp stamp) {

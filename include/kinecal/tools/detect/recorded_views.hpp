@@ -51,7 +51,7 @@ struct RecordedStandstill {
   std::vector<std::vector<std::shared_ptr<detail::RawView>>> views;  ///< a few of each camera
 };
 
-/// The view of a camera in a standstill, or why there is none.
+/// The view of a camera in a standstill, or why it is missing.
 struct RecordedView {
   std::optional<View> view = {};  ///< with the joints of its moment
   std::string refusal = {};       ///< empty if there is one

@@ -9,7 +9,7 @@
 
 namespace kinecal {
 
-/// The chosen view, or why there is none.
+/// The chosen view, or why it is missing.
 struct StillView {
   std::size_t index = 0;     ///< of the view
   std::string refusal = {};  ///< empty if one was chosen

@@ -22,7 +22,7 @@ struct Explanations {
 
 /// @param config  of one step
 /// @param names   two candidates as `kinecal identify` names them, or a parameter of each
-/// @throws InputError  if a name is none, or both are the same
+/// @throws InputError  if a name is unknown, or both are the same
 [[nodiscard]] Explanations free_explanations(const Config& config, const Robot& robot,
                                              std::span<const Sample> samples,
                                              const std::vector<std::string>& names);

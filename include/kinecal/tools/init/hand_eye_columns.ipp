@@ -111,7 +111,7 @@ rotation_names() {
 
 /// The column that names the row of another table: `image` if both have it, else the first that both
 /// have.
-/// @throws InputError  if there is none
+/// @throws InputError  if it is missing
 [[nodiscard]] inline std::string common_column(const HandEyeTable& a, const HandEyeTable& b) {
   for (const bool any : {false, true}) {
     for (const TableColumn& column : a.columns()) {

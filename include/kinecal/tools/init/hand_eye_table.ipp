@@ -49,7 +49,7 @@ class HandEyeTable {
     return {};
   }
   /// The same.
-  /// @throws InputError  if there are none
+  /// @throws InputError  if they are missing
   [[nodiscard]] std::vector<int> find(const std::vector<Names>& lists,
                                       const std::string& what) const {
     std::vector<int> found = find_any(lists);

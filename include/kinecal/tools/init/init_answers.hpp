@@ -54,7 +54,7 @@ inline constexpr std::array<InitTargetWord, 9> kInitTargets = {{
   return to_string(target);
 }
 
-/// The target with this name on the command line; nullopt if there is none.
+/// The target with this name on the command line; nullopt if absent.
 [[nodiscard]] inline std::optional<InitTargetWord> init_target(std::string_view word) {
   for (const InitTargetWord& known : kInitTargets) {
     if (known.word == word) return known;

@@ -15,7 +15,7 @@
 
 namespace kinecal::detail {
 
-/// The date at the end of a name such as calibration_2026_11_21_20_47_57; empty if there is none.
+/// The date at the end of a name such as calibration_2026_11_21_20_47_57; empty if absent.
 [[nodiscard]] inline std::string date_in_name(const std::string& stem) {
   const std::string shape = "_dddd_dd_dd_dd_dd_dd";
   if (stem.size() < shape.size()) return {};

@@ -85,7 +85,7 @@ class LaunchFolder {
   }
 
   /// The launch file that restore() would restore: the newest backup.
-  /// @throws InputError  if there is none
+  /// @throws InputError  if it is missing
   [[nodiscard]] std::filesystem::path backup() const {
     return folder_ / backup_name(checked_backup());
   }
@@ -113,7 +113,7 @@ class LaunchFolder {
 
  private:
   static constexpr const char* kStaging = ".kinecal-install";
-  static constexpr int kMostBackups = 999'999'999;  ///< files with larger numbers are none
+  static constexpr int kMostBackups = 999'999'999;  ///< files with larger numbers are no backups
 
   /// A temporary folder.  Its name is always the same, so that interrupted runs do not pile up.
   struct Staging {
@@ -172,7 +172,7 @@ class LaunchFolder {
     return launch_ + ".backup_" + std::to_string(n);
   }
 
-  /// Number of the newest backup, from 1; 0 if there is none.
+  /// Number of the newest backup, from 1; 0 if absent.
   [[nodiscard]] int newest_backup() const {
     const std::string start = launch_ + ".backup_";
     int newest = 0;
@@ -189,7 +189,7 @@ class LaunchFolder {
 
   /// Number of the newest backup that differs from the launch file.  An equal one comes from an
   /// interrupted run and would restore nothing.
-  /// @throws InputError  if there is none
+  /// @throws InputError  if it is missing
   [[nodiscard]] int checked_backup() const {
     const std::string text = read_text_file(launch());
     for (int n = newest_backup(); n > 0; --n) {

@@ -58,7 +58,7 @@ class LaunchText : public XmlText {
   LaunchText(std::string text, std::string file)
       : XmlText(std::move(text), std::move(file), {"a launch file", "launch"}) {}
 
-  /// The element of a setting; an error and a null node if there are none or several.
+  /// The element of a setting; an error and a null node if absent or several.
   [[nodiscard]] pugi::xml_node find(const LaunchSetting& setting, Diagnostics& diagnostics) const {
     const std::vector<Named> all = elements(setting.element);
     const std::string what = subject(setting);
@@ -85,7 +85,7 @@ class LaunchText : public XmlText {
     return found.size() == 1 ? found[0] : pugi::xml_node();
   }
 
-  /// The value of an element, in any attribute; empty if there is none.
+  /// The value of an element, in any attribute; empty if absent.
   [[nodiscard]] static std::string value_of(pugi::xml_node element) {
     for (const std::string_view name : kValueAttributes) {
       if (const auto value = element.attribute(name.data())) return value.value();

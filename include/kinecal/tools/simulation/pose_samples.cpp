@@ -45,7 +45,7 @@ class PoseSampling {
     return values;
   }
 
-  /// The sample of a pose, or why there is none.
+  /// The sample of a pose, or why it is missing.
   [[nodiscard]] std::pair<std::optional<Sample>, std::string> sample(
       const CapturePose& pose) const {
     Sample sample;

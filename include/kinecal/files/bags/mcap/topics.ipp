@@ -98,7 +98,7 @@ class McapTopics {
     return topic.wanted = reader.wants(topic.topic);
   }
 
-  /// A warning about non-ROS topics; empty if there are none.
+  /// A warning about non-ROS topics; empty if absent.
   [[nodiscard]] std::string foreign() const {
     if (foreign_ == 0) return "";
     return fmt::format("{} topic{} not in an encoding of ROS and left out: {}{}", foreign_,

@@ -34,7 +34,7 @@ class Ros1BagWriter {
   /// @param out          binary and seekable; the bag begins at its position
   /// @param compression  none, bz2 or lz4: rosbag reads these
   /// @param chunk_bytes  size of messages after which a chunk ends
-  /// @throws std::invalid_argument  if the compression is none of these, or not available
+  /// @throws std::invalid_argument  if the compression is another, or not available
   /// @throws std::runtime_error     if the stream cannot be written
   explicit Ros1BagWriter(std::ostream& out, Compression compression = Compression::none,
                          std::size_t chunk_bytes = kChunkBytes);

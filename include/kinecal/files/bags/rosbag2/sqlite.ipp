@@ -128,7 +128,7 @@ class SqliteRows {
   }
 
   /// Goes to the next row, at first to the first one.
-  /// @return  false if there is none
+  /// @return  false if absent
   [[nodiscard]] bool next() {
     const int code = sqlite3_step(handle_.get());
     if (code == SQLITE_ROW) return true;

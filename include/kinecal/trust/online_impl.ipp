@@ -14,7 +14,7 @@
 
 namespace kinecal {
 
-struct OnlineCalibration::Inside {
+struct OnlineCalibration::Impl {
   MakeProblem make;
   FreeSet free;
   std::vector<double> values;
@@ -70,7 +70,7 @@ struct SampleRows {
 }  // namespace detail
 
 /// Gauss-Newton steps, halved until the cost falls.
-inline void OnlineCalibration::Inside::step_to_minimum(AnyEvaluator& evaluator) {
+inline void OnlineCalibration::Impl::step_to_minimum(AnyEvaluator& evaluator) {
   constexpr int kSteps = 8, kHalves = 6;
   constexpr double kSettled = 1e-6;    // of the cost
   constexpr double kUncertain = 1e-4;  // of the largest singular value: no steps along these
@@ -107,7 +107,7 @@ inline void OnlineCalibration::Inside::step_to_minimum(AnyEvaluator& evaluator) 
   problem->set_poses_of_samples(evaluator.own_poses(values));
 }
 
-inline void OnlineCalibration::Inside::estimate_noise(AnyEvaluator& evaluator, double cost) {
+inline void OnlineCalibration::Impl::estimate_noise(AnyEvaluator& evaluator, double cost) {
   const detail::Spectrum spectrum(hessian);
   const auto rank = static_cast<int>(spectrum.singular.size() - spectrum.null);
   const int of_priors = static_cast<int>(problem->priors().size()) * Prior::kRows;
@@ -119,7 +119,7 @@ inline void OnlineCalibration::Inside::estimate_noise(AnyEvaluator& evaluator, d
 }
 
 /// X of the last sample; zero if it has no residuals.
-inline double OnlineCalibration::Inside::innovation(AnyEvaluator& evaluator, int& rows) const {
+inline double OnlineCalibration::Impl::innovation(AnyEvaluator& evaluator, int& rows) const {
   detail::SampleRows last;
   const int number = problem->num_samples() - 1;
   (void)evaluator.evaluate(values, true, [&](int term, int sample, const TermResiduals& of_term) {
@@ -149,8 +149,8 @@ inline std::vector<const Sample*> some_of(const std::vector<Sample>& samples) {
 }  // namespace detail
 
 /// The worse of captured poses and poses ahead.
-inline void OnlineCalibration::Inside::set_pose(OnlineState& state,
-                                                const Eigen::MatrixXd& information) const {
+inline void OnlineCalibration::Impl::set_pose(OnlineState& state,
+                                              const Eigen::MatrixXd& information) const {
   const detail::Spectrum spectrum(information);
   const Eigen::MatrixXd covariance = noise2 * spectrum.pseudo_inverse();
   const Eigen::MatrixXd null =
