@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "kinecal/capture/april_tag_finder.hpp"
-#include "kinecal/capture/checkerboard_finder.hpp"
+#include "kinecal/capture/finders/april_tag_finder.hpp"
+#include "kinecal/capture/finders/checkerboard_finder.hpp"
 #include "support/board_images.hpp"
 
 #ifdef KINECAL_HAVE_OPENCV

@@ -8,8 +8,8 @@
 
 #include "capture/led_scene.hpp"
 #include "capture/room_scene.hpp"
-#include "kinecal/capture/plane_finder.hpp"
-#include "kinecal/capture/robot_finder.hpp"
+#include "kinecal/capture/finders/plane_finder.hpp"
+#include "kinecal/capture/finders/robot_finder.hpp"
 
 namespace kinecal {
 namespace {

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/capture/checkerboard_finder.hpp"
+#include "kinecal/capture/finders/checkerboard_finder.hpp"
 #include "kinecal/files/images/read_image.hpp"
 
 namespace {

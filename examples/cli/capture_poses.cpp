@@ -13,7 +13,7 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "interruption.hpp"
-#include "kinecal/capture/settling.hpp"
+#include "kinecal/capture/session/settling.hpp"
 #include "kinecal/files/recordings/write_recording.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/counted.hpp"

@@ -10,7 +10,7 @@
 #include "input.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/trust/observability.hpp"
+#include "kinecal/trust/uncertainty/observability.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {

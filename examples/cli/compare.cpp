@@ -20,7 +20,7 @@
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/tools/install/stored_result.hpp"
-#include "kinecal/trust/pose_change.hpp"
+#include "kinecal/trust/verify/pose_change.hpp"
 #include "output_file.hpp"
 #include "report.hpp"
 #include "terminal.hpp"

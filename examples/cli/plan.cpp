@@ -18,7 +18,7 @@
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/frame_name.hpp"
-#include "kinecal/trust/observability.hpp"
+#include "kinecal/trust/uncertainty/observability.hpp"
 #include "output_file.hpp"
 #include "plan_page.hpp"
 #include "pose_choice.hpp"

@@ -12,7 +12,7 @@
 
 #include "kinecal/files/urdf/velocity_limits.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/trust/pose_change.hpp"
+#include "kinecal/trust/verify/pose_change.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "kinecal/text/counted.hpp"
-#include "kinecal/trust/pose_change.hpp"
+#include "kinecal/trust/verify/pose_change.hpp"
 #include "pose_choice.hpp"
 
 namespace kinecal::cli {

@@ -17,7 +17,7 @@
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/scene_clouds.hpp"
 #include "kinecal/report/scene_json.hpp"
-#include "kinecal/trust/workspace_map.hpp"
+#include "kinecal/trust/uncertainty/workspace_map.hpp"
 #include "output_file.hpp"
 #include "scene.hpp"
 

@@ -18,8 +18,8 @@
 #include "kinecal/tools/identify/tell_apart.hpp"
 #include "kinecal/tools/simulation/pose_samples.hpp"
 #include "kinecal/trust/assess.hpp"
-#include "kinecal/trust/compared_frames.hpp"
-#include "kinecal/trust/ruined.hpp"
+#include "kinecal/trust/captures/ruined.hpp"
+#include "kinecal/trust/uncertainty/compared_frames.hpp"
 #include "pose_file.hpp"
 #include "terminal.hpp"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "kinecal/capture/capture_pose.hpp"
+#include "kinecal/capture/session/capture_pose.hpp"
 #include "kinecal/config/config.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/study/repeatability.hpp"

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "kinecal/tools/simulation/simulation_plan.hpp"
-#include "kinecal/trust/compared_frames.hpp"
-#include "kinecal/trust/pose_change.hpp"
+#include "kinecal/trust/uncertainty/compared_frames.hpp"
+#include "kinecal/trust/verify/pose_change.hpp"
 
 namespace kinecal::cli {
 

@@ -12,7 +12,7 @@
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/trust/pose_change.hpp"
+#include "kinecal/trust/verify/pose_change.hpp"
 #include "new_samples.hpp"
 #include "output_file.hpp"
 #include "terminal.hpp"

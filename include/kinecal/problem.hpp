@@ -6,5 +6,6 @@
 #include "kinecal/problem/batches.hpp"
 #include "kinecal/problem/mounted_sensor.hpp"
 #include "kinecal/problem/sample_layout.hpp"
+#include "kinecal/problem/sample_reading.hpp"
 #include "kinecal/problem/sampled_chain.hpp"
 #include "kinecal/problem/term.hpp"

@@ -7,6 +7,7 @@
 #include "kinecal/solve/calibrate_crate.hpp"
 #include "kinecal/solve/ceres_bridge.hpp"
 #include "kinecal/solve/compressed_cost.hpp"
+#include "kinecal/solve/determined_spectrum.hpp"
 #include "kinecal/solve/fit_frames.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/solve/pose_search.hpp"

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "kinecal/capture/find_leds.hpp"
+#include "kinecal/capture/finders/find_leds.hpp"
 
 namespace kinecal {
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "capture/led_scene.hpp"
-#include "kinecal/capture/region.hpp"
+#include "kinecal/capture/finders/region.hpp"
 
 namespace kinecal {
 

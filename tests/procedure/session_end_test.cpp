@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/trust/pose_elsewhere.hpp"
+#include "kinecal/trust/uncertainty/pose_elsewhere.hpp"
 #include "support/alike_samples.hpp"
 
 namespace kinecal::test {

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <string>
 
-#include "kinecal/capture/square_edges.hpp"
+#include "kinecal/capture/boards/square_edges.hpp"
 #include "kinecal/files/images/png_bytes.hpp"
 #include "kinecal/files/images/read_image.hpp"
 #include "support/data.hpp"

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "kinecal/files/messages/make.ipp"
+#include "kinecal/files/messages/make.hpp"
 #include "kinecal/files/recordings/bag_output.hpp"
 #include "support/temporary_folder.hpp"
 

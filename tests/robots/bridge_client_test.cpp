@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/files/messages/make.ipp"
-#include "kinecal/files/messages/message_fields.ipp"
+#include "kinecal/files/messages/make.hpp"
+#include "kinecal/files/messages/message_fields.hpp"
 #include "support/bridge_server.hpp"
 #include "support/error_of.hpp"
 

@@ -1,4 +1,4 @@
-#include "kinecal/solve/determined_spectrum.ipp"
+#include "kinecal/solve/determined_spectrum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -13,8 +13,8 @@
 #include <filesystem>
 #include <random>
 
-#include "kinecal/capture/find_leds.hpp"
-#include "kinecal/capture/session.hpp"
+#include "kinecal/capture/finders/find_leds.hpp"
+#include "kinecal/capture/session/session.hpp"
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/procedure/session_end.hpp"

@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-#include "kinecal/capture/april_tag_finder.hpp"
-#include "kinecal/capture/checkerboard_finder.hpp"
+#include "kinecal/capture/finders/april_tag_finder.hpp"
+#include "kinecal/capture/finders/checkerboard_finder.hpp"
 #include "kinecal/study/render.hpp"
 #include "kinecal/study/tag_grid.hpp"
 

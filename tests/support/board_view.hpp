@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "kinecal/capture/target.hpp"
+#include "kinecal/capture/boards/target.hpp"
 #include "kinecal/geometry/pose.hpp"
 
 namespace kinecal::test {

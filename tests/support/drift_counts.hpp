@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "kinecal/trust/drift.hpp"
+#include "kinecal/trust/verify/drift.hpp"
 
 namespace kinecal::test {
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "kinecal/capture/view.hpp"
-#include "kinecal/files/messages/make.ipp"
-#include "kinecal/files/messages/message_fields.ipp"
+#include "kinecal/files/messages/make.hpp"
+#include "kinecal/files/messages/message_fields.hpp"
 #include "kinecal/files/recordings/bag_output.hpp"
 #include "kinecal/files/samples/read_samples.hpp"
 

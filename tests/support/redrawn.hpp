@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kinecal/trust.hpp"
-#include "kinecal/trust/joint_effects.ipp"
+#include "kinecal/trust/noise/joint_effects.ipp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
 #include "support/slip_size.hpp"

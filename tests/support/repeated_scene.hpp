@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "kinecal/trust/drift.hpp"
+#include "kinecal/trust/verify/drift.hpp"
 #include "support/noisy_scene.hpp"
 #include "support/slip_size.hpp"
 

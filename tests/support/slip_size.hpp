@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/trust/noise.hpp"
-#include "kinecal/trust/sample_slopes.ipp"
+#include "kinecal/trust/noise/noise.hpp"
+#include "kinecal/trust/noise/sample_slopes.hpp"
 
 namespace kinecal::test {
 

@@ -25,7 +25,7 @@
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
 #include "kinecal/tools/simulation/pose_samples.hpp"
-#include "kinecal/trust/observability.hpp"
+#include "kinecal/trust/uncertainty/observability.hpp"
 #include "support/paths.hpp"
 
 namespace kinecal::test {

@@ -2,22 +2,312 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/config/assemble.hpp"
 
-#include "kinecal/config/add_blocks.ipp"
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/config/config.hpp"
 #include "kinecal/config/config_free.ipp"
 #include "kinecal/config/few_samples.ipp"
-#include "kinecal/config/free_set.ipp"
-#include "kinecal/config/id_warnings.ipp"
-#include "kinecal/config/missing_sensors.ipp"
+#include "kinecal/config/loss_names.hpp"
+#include "kinecal/config/missing_sensors.hpp"
 #include "kinecal/config/parameters_from_config.hpp"
+#include "kinecal/config/registry.hpp"
 #include "kinecal/config/sample_warnings.ipp"
 #include "kinecal/config/unknown_frames.ipp"
-#include "kinecal/config/unneeded_parts.ipp"
+#include "kinecal/errors/prior.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/kinematics/chain.hpp"
+#include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/problem/any_problem.hpp"
+#include "kinecal/problem/term.hpp"
+#include "kinecal/samples/paired_features.hpp"
+#include "kinecal/samples/sample.hpp"
+#include "kinecal/text/frame_name.hpp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
+
+// Adds the error blocks of a step to a problem.
+
+/// Numbers of samples in which a block's first model observes something: alone, and together with
+/// another model of the step.
+struct Company {
+  int alone = 0, beside = 0;
+};
+[[nodiscard]] Company company_of(const BlockConfig& block, const StepConfig& step,
+                                 std::span<const Sample> samples) {
+  Company count;
+  for (const Sample& sample : samples) {
+    const auto observes = [&](const std::string& model) {
+      const Observation* seen = sample.observation(model);
+      return seen != nullptr && !seen->features.empty();
+    };
+    if (block.models.empty() || !observes(block.models.front())) continue;
+    const bool beside =
+        std::any_of(step.models.begin(), step.models.end(), [&](const ModelConfig& model) {
+          return model.name != block.models.front() && observes(model.name);
+        });
+    ++(beside ? count.beside : count.alone);
+  }
+  return count;
+}
+
+/// True if a plane block uses only the samples in which its model observes alone, by default: if
+/// there are such samples, points seen together with another model, such as the LEDs of a gripper,
+/// are not on the plane.
+[[nodiscard]] bool is_exclusive_by_default(const BlockConfig& block, const StepConfig& step,
+                                           std::span<const Sample> samples) {
+  if (block.type != "chain3d_to_plane" || block.exclusive || !block.ground.empty()) return false;
+  const Company count = company_of(block, step, samples);
+  return count.alone > 0 && count.beside > 0;
+}
+
+/// @throws std::exception  if the block's numbers are impossible or its sensors do not match
+void add_block(AnyProblem& problem, const BlockConfig& block, bool exclusive) {
+  const BlockEntry* entry = entry_of(block);
+  if (entry == nullptr) throw std::invalid_argument("no type '" + block.type + "'");
+  TermOptions options;
+  options.type = block.type;
+  options.unit = entry->unit;
+  options.exclusive = exclusive;
+  options.beside = block.ground;
+  options.loss = {loss_type(block.loss.type), block.loss.scale};
+  options.sigma = block.sigma;
+  if (const auto scale = block.numbers.find("scale"); scale != block.numbers.end()) {
+    options.scale = scale->second;
+  }
+  entry->add(problem, block, options);
+}
+
+// The free parameters of a step that some residual depends on; the others are reported, by their cause.
+
+/// Warns of sensors that are in no sample, with what follows from that.
+/// @param held  free parameters that keep their initial values
+void report_missing(const MissingSensors& missing, const StepConfig& step,
+                    const std::vector<std::string>& held, Diagnostics& diagnostics) {
+  if (missing.models.empty()) return;
+  std::vector<std::string> blocks;
+  for (const BlockConfig& block : step.error_blocks) {
+    if (missing.are_in(block)) blocks.push_back(block.name);
+  }
+  std::string text = fmt::format("{}; so {} {} no samples", sentence_of(missing),
+                                 quoted_list(blocks), blocks.size() == 1 ? "has" : "have");
+  if (!held.empty()) {
+    text += fmt::format(", and {} {}", quoted_list(held, 3, "parameter"),
+                        held.size() == 1 ? "keeps its initial value" : "keep their initial values");
+  }
+  diagnostics.warning(missing.models.front()->place, text);
+}
+
+/// Warns of parameters of one line of the file that have no residual.
+void report_untouched(const std::vector<const Parameter*>& parameters, const SourceLocation& place,
+                      Diagnostics& diagnostics) {
+  if (parameters.size() == 1) {
+    diagnostics.warning(place, fmt::format("no residual of these samples depends on '{}'; it "
+                                           "keeps its initial value {}",
+                                           parameters[0]->name, parameters[0]->value));
+    return;
+  }
+  std::vector<std::string> names;
+  for (const Parameter* parameter : parameters) names.push_back(parameter->name);
+  diagnostics.warning(place, fmt::format("no residual of these samples depends on {}; they keep "
+                                         "their initial values",
+                                         quoted_list(names)));
+}
+
+/// The free parameters of a step that affect residuals, in file order; warns of others.
+[[nodiscard]] FreeSet free_set(const StepConfig& step, const AnyProblem& problem,
+                               std::span<const Sample> samples, const MissingSensors& missing,
+                               Diagnostics& diagnostics) {
+  const ParameterTable& table = problem.table();
+  const std::vector<int> touched = problem.touched_parameters();
+  const Consequences consequences(missing, step, problem);
+  std::vector<int> free;
+  std::vector<std::string> held;
+  std::vector<std::pair<SourceLocation, std::vector<const Parameter*>>> others;  // by line
+  for (const FreeParamConfig& param : free_parameters(step)) {
+    const int index = table.find(param.name);
+    if (index < 0) continue;
+    if (samples.empty() || std::binary_search(touched.begin(), touched.end(), index)) {
+      free.push_back(index);
+    } else if (consequences.contain(param.name)) {
+      held.push_back(param.name);
+    } else {
+      if (others.empty() || others.back().first.line != param.place.line) {
+        others.emplace_back(param.place, std::vector<const Parameter*>());
+      }
+      others.back().second.push_back(&table[index]);
+    }
+  }
+  report_missing(missing, step, held, diagnostics);
+  for (const auto& [place, parameters] : others) report_untouched(parameters, place, diagnostics);
+  if (free.empty()) {
+    diagnostics.error(step.place, fmt::format("step '{}': these samples determine none of "
+                                              "its free parameters",
+                                              step.name));
+  }
+  return FreeSet(std::move(free), table.size());
+}
+
+// Warnings about the ids by which error blocks pair features.
+
+/// Warns of samples in which the sensors of a term saw different features.
+void warn_of_disjoint_ids(const Term& term, const BlockConfig& block,
+                          std::span<const Sample> samples, Diagnostics& diagnostics) {
+  std::size_t disjoint = 0;
+  std::string first;
+  for (const Sample& sample : samples) {
+    if (!term.pairs_features() || !ids_are_disjoint(sample, block.models)) continue;
+    if (disjoint++ == 0) first = sample.source;
+  }
+  if (disjoint == 0) return;
+  diagnostics.warning(
+      block.place,
+      fmt::format("error block '{}' does not use {} sample{}: its sensors observed no feature of "
+                  "the same id; the first is at {}",
+                  term.name, disjoint, disjoint == 1 ? "" : "s", first));
+}
+
+/// Warns of samples in which some sensors of a term have ids, and others do not.
+void warn_of_one_sided_ids(const Term& term, const BlockConfig& block,
+                           std::span<const Sample> samples, Diagnostics& diagnostics) {
+  if (!term.pairs_features()) return;
+  for (const Sample& sample : samples) {
+    std::string with, without;
+    for (const std::string& model : block.models) {
+      const Observation* seen = sample.observation(model);
+      if (seen == nullptr || seen->features.empty()) continue;
+      (seen->features.front().id ? with : without) = model;
+    }
+    if (with.empty() || without.empty()) continue;
+    diagnostics.warning(
+        block.place, fmt::format("error block '{}': features of '{}' have ids, those of '{}' have "
+                                 "none, so they are paired by place; the first sample is at {}",
+                                 term.name, with, without, sample.source));
+    return;
+  }
+}
+
+// What a configuration names and this calibration does not need: priors on what no step frees,
+// initial values of frames that are not free, models that no error block compares.
+//
+// robot_calibration runs such files, so each is a warning and has no effect.  A name that neither
+// the robot nor the samples have stays an error: it is probably misspelt.
+
+/// Names of the robot and of the frames in which features were recorded.
+struct KnownNames {
+  const Robot& robot;
+  std::set<std::string> recorded;  ///< frames; empty without samples
+  bool have_samples = false;
+
+  [[nodiscard]] bool has_frame(const std::string& name) const {
+    return robot.has_joint(name) || robot.has_link(name) ||
+           recorded.contains(std::string(plain_frame(name)));
+  }
+  /// True for a joint, link or frame, or a parameter of one: elbow_gear_ratio, tool_joint_x.
+  [[nodiscard]] bool has(const std::string& name) const {
+    const auto is_part = [&](std::string_view part) {
+      const std::string suffix = "_" + std::string(part);
+      return name.ends_with(suffix) && has_frame(name.substr(0, name.size() - suffix.size()));
+    };
+    return has_frame(name) || std::any_of(kFrameAxes.begin(), kFrameAxes.end(), is_part) ||
+           joint_model_parameter(robot, name).has_value();
+  }
+  /// True if nothing shows that a name is misspelt: it is known, or, without samples, it may be a
+  /// frame of features and resembles no other name.
+  /// @param others  names that could be meant
+  template <class Names>
+  [[nodiscard]] bool may_be_meant(const std::string& name, const Names& others) const {
+    return has(name) || (!have_samples && !nearest_name(name, others) &&
+                         !nearest_name(name, robot.joint_names()));
+  }
+};
+
+/// Drops priors on what no step frees.
+void drop_priors_without_effect(Config& config, const ParameterTable& table,
+                                const KnownNames& known, Diagnostics& diagnostics) {
+  std::set<int> free;
+  for (const StepConfig& step : config.steps) {
+    for (const FreeParamConfig& param : free_parameters(step)) free.insert(table.find(param.name));
+  }
+  free.erase(-1);
+  std::vector<std::string> names;
+  for (const Parameter& parameter : table) names.push_back(parameter.name);
+  for (StepConfig& step : config.steps) {
+    std::erase_if(step.error_blocks, [&](const BlockConfig& block) {
+      if (block.param.empty()) return false;
+      const auto rows = Prior{block.param}.parameters(table);
+      const bool exists = std::any_of(rows.begin(), rows.end(), [](int p) { return p >= 0; });
+      const bool is_held =
+          std::none_of(rows.begin(), rows.end(), [&](int p) { return free.contains(p); });
+      if (!is_held || (!exists && !known.may_be_meant(block.param, names))) return false;
+      diagnostics.warning(block.place, fmt::format("error block '{}' has no effect: no step frees "
+                                                   "its param '{}'",
+                                                   block.name, block.param));
+      return !exists;
+    });
+  }
+}
+
+/// Reports initial values of frames that are free neither in their step nor before it.
+void check_initial_frames(const Config& config, const KnownNames& known, Diagnostics& diagnostics) {
+  std::set<std::string> free;
+  for (const StepConfig& step : config.steps) {
+    for (const FreeFrameConfig& frame : step.free_frames) free.insert(frame.name);
+    for (const FrameInitialValueConfig& value : step.frame_initial_values) {
+      if (free.contains(value.name)) continue;
+      const std::string subject = "initial value of free frame '" + value.name + "'";
+      if (known.has(value.name) || !nearest_name(value.name, free)) {
+        diagnostics.warning(value.place,
+                            subject + " has no effect: the frame is not free in this step");
+      } else {
+        diagnostics.error(value.place, subject + ": there is no such free frame" +
+                                           did_you_mean(value.name, free));
+      }
+    }
+  }
+}
+
+/// Drops models that no error block compares and that do not fit the robot.
+void drop_models_without_use(Config& config, const Robot& robot, Diagnostics& diagnostics) {
+  for (StepConfig& step : config.steps) {
+    if (step.error_blocks.empty()) continue;  // they are wrong, so what they use is not known
+    std::erase_if(step.models, [&](const ModelConfig& model) {
+      if (is_used(step, model.name)) return false;
+      try {
+        (void)make_chain(robot, config.base_link, model.frame);
+        return false;
+      } catch (const RobotError& e) {
+        diagnostics.warning(model.place,
+                            fmt::format("model '{}': {}; no error block uses the model,"
+                                        " so it is left out",
+                                        model.name, e.what()));
+        return true;
+      }
+    });
+  }
+}
+
+/// The configuration without what has no effect; each is a warning.
+[[nodiscard]] Config without_unneeded(Config config, const Robot& robot,
+                                      const ParameterTable& table, std::span<const Sample> samples,
+                                      Diagnostics& diagnostics) {
+  const KnownNames known{robot, feature_frames(samples), !samples.empty()};
+  drop_priors_without_effect(config, table, known, diagnostics);
+  check_initial_frames(config, known, diagnostics);
+  drop_models_without_use(config, robot, diagnostics);
+  return config;
+}
 
 /// Adds the samples.  Samples that are refused for one reason give one error.
 /// @returns  indices of those that were added

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/files/yaml/config_map.ipp"
+#include "kinecal/files/yaml/config_map.hpp"
 
 namespace kinecal::detail {
 

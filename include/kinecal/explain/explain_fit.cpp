@@ -8,20 +8,301 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <memory>
+#include <numeric>
 #include <optional>
+#include <random>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/evaluation/parallel.hpp"
-#include "kinecal/explain/absorbed_scale.ipp"
-#include "kinecal/explain/in_part.ipp"
 #include "kinecal/explain/refit.ipp"
 #include "kinecal/explain/scale.ipp"
+#include "kinecal/geometry/median.hpp"
+#include "kinecal/parameters/joint_models.hpp"
 #include "kinecal/text/first_names.hpp"
+#include "kinecal/trust/assess.hpp"
+#include "kinecal/trust/judge_files.hpp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
+
+// A scale of points that free lengths absorb: the fit is as good, but all lengths change by one factor.
+//
+//   Q(s) = sum over lengths of ((d + s v) / u)^2        u^2 = (1.5 mm)^2 + (3 +-)^2
+//
+// with d the change of a length by the calibration, and v what it changes by if points are multiplied by 1 + s:
+// by a solve with slightly larger points.  Robots are built to a millimetre or so, each length wrong in its own
+// way; so a factor that undoes nearly all of the change is no accident.
+
+/// A free length of the robot that the samples determine.
+struct FreeLength {
+  std::string name;        ///< of the parameter
+  double change = 0.0;     ///< by the calibration, metres
+  double deviation = 0.0;  ///< of the parameter, metres
+};
+
+/// The translations of joints that have a place in the URDF.
+[[nodiscard]] std::vector<FreeLength> free_lengths(const Robot& robot,
+                                                   const ParameterTable& solution,
+                                                   const Assessment& step) {
+  std::vector<FreeLength> lengths;
+  for (const Joint& joint : robot.joints()) {
+    if (joint.origin.translation.isZero()) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int p = solution.find(parameter_name(joint.name, kFrameAxes[axis]));
+      if (p < 0) continue;
+      const std::optional<double> deviation = step.deviation(p);
+      if (!deviation || !std::isfinite(*deviation)) continue;
+      lengths.push_back({solution[p].name, solution[p].value - solution[p].initial, *deviation});
+    }
+  }
+  return lengths;
+}
+
+/// A configuration that frees the zeros of all joints in place of lengths and joint models.  Whole frames are
+/// mounts and stay.
+[[nodiscard]] Config with_zeros_for_lengths(Config config, const Robot& robot) {
+  for (StepConfig& step : config.steps) {
+    std::erase_if(step.free_frames, [&](const FreeFrameConfig& frame) {
+      const auto is_held = [](bool free) { return !free; };
+      return robot.has_joint(frame.name) && moves(robot.joint(frame.name).type) &&
+             std::any_of(frame.axes.begin(), frame.axes.end(), is_held);
+    });
+    std::erase_if(step.free_params, [&](const FreeParamConfig& free) {
+      return robot.has_joint(free.name) || joint_model_parameter(robot, free.name);
+    });
+    for (const Joint* joint : joints_between(config, robot)) {
+      if (moves(joint->type) && !joint->mimic)
+        step.free_params.push_back({joint->name, step.place});
+    }
+  }
+  return config;
+}
+
+/// The root of the mean squared change of lengths, metres.
+[[nodiscard]] double mean_change(const std::vector<FreeLength>& lengths,
+                                 const ParameterTable& solution) {
+  double squares = 0.0;
+  for (const FreeLength& length : lengths) {
+    const Parameter& p = solution[length.name];
+    squares += (p.value - p.initial) * (p.value - p.initial);
+  }
+  return std::sqrt(squares / static_cast<double>(lengths.size()));
+}
+
+/// The factor of points that undoes nearly all changes of lengths, as a sentence; nullopt if none does.
+[[nodiscard]] std::optional<std::string> absorbed_scale(const Refits& refits,
+                                                        const Suspect& suspect, const Refit& now,
+                                                        const std::vector<FreeLength>& lengths) {
+  constexpr double kStep = 0.005;
+  const auto scaled = refits.with(with_scaled(refits, suspect, 1.0 + kStep));
+  if (!scaled) return std::nullopt;
+  constexpr double kBuilt = 1.5e-3, kWide = 3.0;  // metres; deviations
+  double before = 0.0, slope = 0.0, curvature = 0.0, least_moved = 0.0;
+  std::vector<double> moves;
+  for (const FreeLength& length : lengths) {
+    const double v = (scaled->table[length.name].value - now.table[length.name].value) / kStep;
+    const double u = std::hypot(kBuilt, kWide * length.deviation);
+    before += length.change * length.change / (u * u);
+    slope += length.change * v / (u * u);
+    curvature += v * v / (u * u);
+    moves.push_back(v / u);
+  }
+  if (!(curvature > 0.0)) return std::nullopt;
+  const double s = -slope / curvature, gain = slope * slope / curvature;
+  for (const double move : moves) least_moved = std::max(least_moved, move * move);
+  constexpr double kSure = 16.0, kExplained = 0.8, kOfOne = 0.85, kFurthest = 0.6;
+  if (gain < kSure || gain < kExplained * before || least_moved > kOfOne * curvature ||
+      std::abs(s) > kFurthest) {
+    return std::nullopt;
+  }
+  constexpr double kAsGood = 1.3;
+  const auto then = refits.with(with_scaled(refits, suspect, 1.0 + s));
+  if (!then || then->cost > kAsGood * now.cost) return std::nullopt;
+  return fmt::format(
+      "{}multiplied by {:.4g}, the lengths of the robot change by {:.2g} mm (RMS) in place of "
+      "{:.2g} "
+      "mm, and the samples fit as well",
+      suspect.undone, 1.0 + s, 1e3 * mean_change(lengths, then->table),
+      1e3 * mean_change(lengths, now.table));
+}
+
+// Suspects in a part of the samples: a third of them with the other sign, rows that belong to neighbours here and there.
+//
+// The samples that agree best are found by concentration: fit, keep those that are nearest, fit again.  At this fit the
+// others are evaluated with each suspect undone; if that mends most of them, it is a suspect in these samples.
+// Source: Rousseeuw, Van Driessen, Computing LTS Regression for Large Data Sets, 2006.
+
+/// Mean squared weighted residual of each sample; infinite for one that cannot be evaluated.
+[[nodiscard]] std::vector<double> sample_squares(const AnyProblem& empty,
+                                                 const Eigen::VectorXd& values,
+                                                 std::span<const Sample> samples) {
+  const std::unique_ptr<AnyProblem> problem = empty.without_samples();
+  std::vector<double> squares(samples.size(), HUGE_VAL);
+  std::vector<int> usable;  // numbers of the problem's samples
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    try {
+      problem->add_sample(samples[i]);
+      usable.push_back(static_cast<int>(i));
+    } catch (const SampleError&) {
+    }
+  }
+  const std::vector<double> misfits =
+      misfits_of(*problem, {values.data(), static_cast<std::size_t>(values.size())}, usable);
+  for (const int i : usable) {
+    const double misfit = misfits[static_cast<std::size_t>(i)];
+    squares[static_cast<std::size_t>(i)] = misfit * misfit;
+  }
+  return squares;
+}
+
+/// The samples that agree best, fitted.
+struct Concentrated {
+  Eigen::VectorXd values;
+  std::vector<double> squares;    ///< of each sample
+  std::vector<std::size_t> kept;  ///< samples that agree best, by number
+  double typical = 0.0;           ///< median of the squares among them
+  bool fits_well = false;         ///< they fit as samples without mistakes do
+};
+
+/// Fits some samples, then repeatedly the share that agrees best.
+/// @param chosen  to begin with, by number
+/// @param free    parameters
+/// @param steps   so many fits
+[[nodiscard]] std::optional<Concentrated> concentrated_from(const Refits& refits,
+                                                            std::vector<std::size_t> chosen,
+                                                            const FreeSet& free, int steps) {
+  constexpr double kKept = 0.6;
+  const std::vector<Sample>& samples = refits.some();
+  const auto kept = static_cast<std::size_t>(kKept * static_cast<double>(samples.size()));
+  std::optional<Concentrated> now;
+  for (int step = 0; step < steps; ++step) {
+    const auto fit = refits.of(chosen, free);
+    if (!fit) break;
+    Concentrated next{fit->table.values(), {}, {}, 0.0, step > 0 && fits(*fit)};
+    next.squares = sample_squares(refits.problem(), next.values, samples);
+    next.kept.resize(samples.size());
+    std::iota(next.kept.begin(), next.kept.end(), 0u);
+    std::stable_sort(next.kept.begin(), next.kept.end(), [&](std::size_t a, std::size_t b) {
+      return next.squares[a] < next.squares[b];
+    });
+    next.kept.resize(kept);
+    std::vector<double> of_kept;
+    for (const std::size_t i : next.kept) of_kept.push_back(next.squares[i]);
+    next.typical = median_of(std::move(of_kept));
+    chosen = next.kept;
+    now = std::move(next);
+  }
+  return now;
+}
+
+/// Fits the 60 percent of the samples that agree best, from starts of as few samples as determine the unknown poses: more
+/// parameters need more samples, of which some are bad.  nullopt if they fit no better than bad samples do.
+[[nodiscard]] std::optional<Concentrated> concentrated(const Refits& refits) {
+  constexpr int kStarts = 60, kFirst = 2, kThen = 4;
+  constexpr std::size_t kFewest = 10, kBest = 4;
+  const std::size_t count = refits.some().size();
+  if (!refits.is_assembled()) return std::nullopt;
+  const FreeSet unknown = refits.unknown(), all = refits.free();
+  if (count < std::max(kFewest, refits.fewest(all))) return std::nullopt;
+  std::vector<std::optional<Concentrated>> starts(kStarts);
+  for_each_piece(kStarts, number_of_threads(0), [&](int start, int) {
+    std::mt19937 random(static_cast<unsigned>(start));
+    std::vector<std::size_t> chosen(count);
+    std::iota(chosen.begin(), chosen.end(), 0u);
+    if (start > 0) {
+      std::shuffle(chosen.begin(), chosen.end(), random);
+      chosen.resize(std::min(count, refits.fewest(unknown)));
+    }
+    starts[static_cast<std::size_t>(start)] = concentrated_from(refits, chosen, unknown, kFirst);
+  });
+  std::erase_if(starts, [](const auto& start) { return !start.has_value(); });
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const auto& a, const auto& b) { return a->typical < b->typical; });
+  starts.resize(std::min(starts.size(), kBest));
+  std::optional<Concentrated> best;
+  for (const auto& start : starts) {
+    auto end = concentrated_from(refits, start->kept, all, kThen);
+    if (end && end->fits_well && (!best || end->typical < best->typical)) best = std::move(end);
+  }
+  return best;
+}
+
+/// True if most of some numbers are next to another one of them.
+[[nodiscard]] bool are_in_runs(const std::vector<std::size_t>& numbers) {
+  std::size_t beside = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const bool before = i > 0 && numbers[i - 1] + 1 == numbers[i];
+    const bool after = i + 1 < numbers.size() && numbers[i] + 1 == numbers[i + 1];
+    beside += before || after ? 1 : 0;
+  }
+  return 2 * beside > numbers.size();
+}
+
+/// A suspect in some of the drawn samples.
+/// @param bad  their numbers among the drawn ones
+[[nodiscard]] Suspect in_samples(const Suspect& suspect, const std::vector<std::size_t>& bad,
+                                 const Refits& refits) {
+  std::vector<std::size_t> numbers;
+  for (const std::size_t i : bad) numbers.push_back(refits.draw()[i]);
+  Suspect part{.undone = fmt::format("{} in {} of {} samples, of which the first is {}",
+                                     suspect.undone, bad.size(), refits.some().size(),
+                                     place_of(refits.some(), bad.front()).str()),
+               .kind = suspect.kind};
+  part.correct_all = [suspect, numbers](std::vector<Sample>& samples) {
+    std::vector<Sample> changed = samples;
+    if (suspect.correct_all) suspect.correct_all(changed);
+    if (suspect.correct) std::for_each(changed.begin(), changed.end(), suspect.correct);
+    for (const std::size_t i : numbers) samples[i] = changed[i];
+  };
+  return part;
+}
+
+/// Suspects in a part of the samples: those that mend most of the samples which do not agree with the others.
+[[nodiscard]] std::vector<Suspect> suspects_in_part(const Refits& refits,
+                                                    const std::vector<Suspect>& suspects) {
+  // The typical one is the median of the best 60 percent: noise alone reaches ten times that.
+  constexpr double kBad = 50.0, kMended = 25.0, kMost = 0.8, kFewestPart = 0.03, kMuchBetter = 0.01;
+  std::vector<Suspect> found, of_rows;
+  const auto agreed = concentrated(refits);
+  if (!agreed) return found;
+  std::vector<std::size_t> bad;
+  for (std::size_t i = 0; i < agreed->squares.size(); ++i) {
+    if (agreed->squares[i] > kBad * agreed->typical) bad.push_back(i);
+  }
+  const auto fewest = static_cast<std::size_t>(
+      std::max(3.0, kFewestPart * static_cast<double>(agreed->squares.size())));
+  if (bad.size() < fewest) return found;
+  for (const Suspect& suspect : suspects) {
+    if (!suspect.correct && !suspect.correct_all) continue;
+    const std::vector<double> squares =
+        sample_squares(refits.problem(), agreed->values, refits.corrected({&suspect}));
+    std::vector<std::size_t> mended;  // and those that are much better so
+    std::size_t right = 0, broken = 0;
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      const bool was_bad = agreed->squares[i] > kBad * agreed->typical;
+      const bool is_right = was_bad && squares[i] < kMended * agreed->typical;
+      if (is_right) ++right;
+      if (is_right || (was_bad && squares[i] < kMuchBetter * agreed->squares[i])) {
+        mended.push_back(i);
+      }
+      if (!was_bad && squares[i] > kBad * agreed->typical) ++broken;
+    }
+    if (static_cast<double>(right) < kMost * static_cast<double>(bad.size())) continue;
+    // What leaves right samples right tells nothing: the joints of a neighbour that touches the same point.
+    if (2 * broken < squares.size() - bad.size()) continue;
+    (suspect.correct_all ? of_rows : found).push_back(in_samples(suspect, mended, refits));
+  }
+  // A neighbour's row makes a wrong one right, whatever is wrong with it; where rows are shifted, neighbours are wrong, too.
+  if (found.empty() && are_in_runs(bad)) found = std::move(of_rows);
+  return found;
+}
 
 /// What explains a bad fit leaves this part of the cost; what helps leaves that.
 constexpr double kExplains = 0.1, kHelps = 0.25;

@@ -10,7 +10,7 @@
 #include "kinecal/config/doubts/check_offsets.hpp"
 #include "kinecal/explain/explain_fit.hpp"
 #include "kinecal/files/results/result_files.hpp"
-#include "kinecal/trust/judge_values.ipp"
+#include "kinecal/trust/judge_values.hpp"
 
 namespace kinecal {
 

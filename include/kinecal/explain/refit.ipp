@@ -19,8 +19,8 @@
 #include "kinecal/explain/explain_fit.hpp"
 #include "kinecal/explain/suspect.hpp"
 #include "kinecal/solve/fit_frames.hpp"
-#include "kinecal/trust/judge_noise.ipp"
-#include "kinecal/trust/judge_values.ipp"
+#include "kinecal/trust/judge_noise.hpp"
+#include "kinecal/trust/judge_values.hpp"
 
 namespace kinecal::detail {
 

@@ -9,11 +9,11 @@
 #include <cmath>
 
 #include "kinecal/config/assemble.hpp"
-#include "kinecal/config/doubts/some_samples.ipp"
+#include "kinecal/config/doubts/some_samples.hpp"
 #include "kinecal/text/reading.hpp"
 #include "kinecal/tools/identify/identified_config.hpp"
-#include "kinecal/trust/plausible_change.ipp"
-#include "kinecal/trust/pose_groups.hpp"
+#include "kinecal/trust/noise/pose_groups.hpp"
+#include "kinecal/trust/plausible_change.hpp"
 
 namespace kinecal {
 

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "kinecal/problem/mounted_sensor.hpp"
-#include "kinecal/problem/sample_reading.ipp"
+#include "kinecal/problem/sample_reading.hpp"
 #include "kinecal/text/frame_name.hpp"
 
 namespace kinecal {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "kinecal/kinematics/pose_walker.hpp"
-#include "kinecal/problem/sample_reading.ipp"
+#include "kinecal/problem/sample_reading.hpp"
 #include "kinecal/problem/sampled_chain.hpp"
 
 namespace kinecal {

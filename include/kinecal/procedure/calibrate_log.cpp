@@ -20,8 +20,8 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/tools/cameras/later_cameras.hpp"
+#include "kinecal/trust/captures/ruined.hpp"
 #include "kinecal/trust/judge_shards.hpp"
-#include "kinecal/trust/ruined.hpp"
 
 namespace kinecal {
 

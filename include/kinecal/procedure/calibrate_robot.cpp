@@ -22,7 +22,7 @@
 #include "kinecal/tools/identify/another_robot.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
 #include "kinecal/trust/judge_files.hpp"
-#include "kinecal/trust/speed_limit.hpp"
+#include "kinecal/trust/systematic/speed_limit.hpp"
 
 namespace kinecal {
 

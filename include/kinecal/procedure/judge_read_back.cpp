@@ -12,7 +12,7 @@
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/procedure/calibrated_files.hpp"
 #include "kinecal/solve/statistics.hpp"
-#include "kinecal/trust/judge_noise.ipp"
+#include "kinecal/trust/judge_noise.hpp"
 
 namespace kinecal {
 

@@ -12,8 +12,8 @@
 #include "kinecal/study/sample_design.hpp"
 #include "kinecal/text/reading.hpp"
 #include "kinecal/trust/measured_numbers.hpp"
-#include "kinecal/trust/pose_elsewhere.hpp"
-#include "kinecal/trust/weak_parameters.hpp"
+#include "kinecal/trust/uncertainty/pose_elsewhere.hpp"
+#include "kinecal/trust/uncertainty/weak_parameters.hpp"
 
 namespace kinecal {
 

@@ -11,7 +11,7 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/text/nearest_name.hpp"
-#include "kinecal/trust/compared_frames.hpp"
+#include "kinecal/trust/uncertainty/compared_frames.hpp"
 
 namespace kinecal {
 

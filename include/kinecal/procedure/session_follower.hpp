@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/capture/capture_pose.hpp"
+#include "kinecal/capture/session/capture_pose.hpp"
 #include "kinecal/config/config.hpp"
 #include "kinecal/procedure/calibrate_robot.hpp"
 #include "kinecal/trust/online.hpp"

@@ -12,7 +12,7 @@
 
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/findings.hpp"
-#include "kinecal/trust/drift.hpp"
+#include "kinecal/trust/verify/drift.hpp"
 
 namespace kinecal {
 

@@ -16,8 +16,8 @@
 
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/robot_scene.hpp"
-#include "kinecal/trust/projection_map.hpp"
-#include "kinecal/trust/workspace_map.hpp"
+#include "kinecal/trust/uncertainty/projection_map.hpp"
+#include "kinecal/trust/uncertainty/workspace_map.hpp"
 
 namespace kinecal {
 

@@ -4,18 +4,245 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
+#include "kinecal/errors/plane_fit.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/report/robot_scene.hpp"
-#include "kinecal/report/scene_points.ipp"
 #include "kinecal/text/reading.hpp"
+#include "kinecal/trust/uncertainty/feature_places.hpp"
 
 namespace kinecal::detail {
+
+// Measured and predicted points for each kind of error block.
+
+/// A pair of points; nullopt if one of them is NaN.
+[[nodiscard]] inline std::optional<ScenePair> scene_pair(const Vector3<double>& measured,
+                                                         const Vector3<double>& predicted) {
+  if (!measured.allFinite() || !predicted.allFinite()) return std::nullopt;
+  const auto numbers = [](const Vector3<double>& p) { return ScenePoint{p.x(), p.y(), p.z()}; };
+  return ScenePair{numbers(measured), numbers(predicted)};
+}
+
+/// A point, and the point of a line of sight at its depth; nullopt behind the camera.
+[[nodiscard]] inline std::optional<ScenePair> pair_at_depth(const PlacedFeature& predicted,
+                                                            const PlacedFeature& ray) {
+  const double depth = ray.axis.dot(predicted.point - ray.origin);
+  if (!(depth > 0.0)) return std::nullopt;
+  return scene_pair(ray.origin + ray.point * (depth / ray.axis.dot(ray.point)), predicted.point);
+}
+
+/// Where two lines of sight are nearest to each other; nullopt if they are parallel.
+[[nodiscard]] inline std::optional<ScenePair> pair_of_rays(const PlacedFeature& a,
+                                                           const PlacedFeature& b) {
+  const Vector3<double> u = a.point.normalized(), v = b.point.normalized();
+  const Vector3<double> way = b.origin - a.origin;
+  const double c = u.dot(v), across = 1.0 - c * c;
+  if (!(across > 1e-12)) return std::nullopt;
+  const double along_a = (way.dot(u) - c * way.dot(v)) / across,
+               along_b = (c * way.dot(u) - way.dot(v)) / across;
+  return scene_pair(a.origin + u * along_a, b.origin + v * along_b);
+}
+
+/// The point at a distance from another one, towards the measured point.
+[[nodiscard]] inline std::optional<ScenePair> pair_at_distance(const Vector3<double>& measured,
+                                                               const Vector3<double>& from,
+                                                               double distance) {
+  return scene_pair(measured, from + (measured - from).normalized() * distance);
+}
+
+/// The plane through points; nullopt if they do not determine one.
+[[nodiscard]] inline std::optional<Plane<double>> plane_through(
+    const std::vector<Vector3<double>>& points) {
+  if (points.size() < 3) return std::nullopt;
+  const PlaneFit<double> fit(points);
+  if (!fit.determined()) return std::nullopt;
+  return fit.plane();
+}
+
+/// The foot of each point of a sensor on the plane of the other sensor's; both ways.
+[[nodiscard]] inline std::vector<std::optional<ScenePair>> pairs_of_planes(
+    const std::vector<PlacedFeature>& a, const std::vector<PlacedFeature>& b) {
+  const auto fit = [](const std::vector<PlacedFeature>& features) {
+    std::vector<Vector3<double>> points;
+    for (const PlacedFeature& feature : features) {
+      if (feature.seen) points.push_back(feature.point);
+    }
+    return plane_through(points);
+  };
+  const auto of_a = fit(a), of_b = fit(b);
+  if (!of_a || !of_b) return {};
+  std::vector<std::optional<ScenePair>> pairs;
+  const auto add = [&](const std::vector<PlacedFeature>& features, const Plane<double>& plane) {
+    for (const PlacedFeature& feature : features) {
+      if (!feature.seen) continue;
+      const double off = plane.normal.dot(feature.point - plane.centroid);
+      pairs.push_back(scene_pair(feature.point, feature.point - plane.normal * off));
+    }
+  };
+  add(a, *of_b);
+  add(b, *of_a);
+  return pairs;
+}
+
+/// The normal of a plane when only distances of points are known: r = n . p + d.
+///
+/// In the principal axes of the points, the two components along their extent follow from a linear
+/// fit.  Points near a plane hardly determine the third; the length of n gives it, with the sign
+/// that fits.
+class PlaneOfDistances {
+ public:
+  void add(const Vector3<double>& p, double r) {
+    points_.push_back(p);
+    distances_.push_back(r);
+  }
+  /// (3) unit vector; nullopt if the points are on one line.
+  [[nodiscard]] std::optional<Vector3<double>> normal() const {
+    const auto plane = plane_through(points_);
+    if (!plane) return std::nullopt;
+    const Vector3<double>&centroid = plane->centroid, &across = plane->normal;
+    double mean = 0.0;
+    for (const double r : distances_) mean += r / static_cast<double>(distances_.size());
+    Matrix3<double> scatter = Matrix3<double>::Zero();
+    Vector3<double> moment = Vector3<double>::Zero();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Vector3<double> q = points_[i] - centroid;
+      scatter += q * q.transpose();
+      moment += q * (distances_[i] - mean);
+    }
+    // The minimum of |q . n - r|^2 over n perpendicular to `across`: a term holds what is along it
+    // at zero.
+    const Matrix3<double> out = across * across.transpose(), in = Matrix3<double>::Identity() - out;
+    const Matrix3<double> held = in * scatter * in + out * scatter.trace();
+    const Vector3<double> along = held.inverse() * (in * moment);
+    const double rest = std::sqrt(std::max(0.0, 1.0 - along.squaredNorm()));
+    const auto misfit = [&](const Vector3<double>& n) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        const double off = n.dot(points_[i] - centroid) - (distances_[i] - mean);
+        sum += off * off;
+      }
+      return sum;
+    };
+    const Vector3<double> up = along + across * rest, down = along - across * rest;
+    return (misfit(up) <= misfit(down) ? up : down).normalized();
+  }
+
+ private:
+  std::vector<Vector3<double>> points_;
+  std::vector<double> distances_;
+};
+
+// The observed and predicted features of a sample as points in the base.
+
+/// The points of a problem for given parameters.
+class ScenePoints {
+ public:
+  /// @param values  of all parameters of the table
+  ScenePoints(const AnyProblem& problem, std::span<const double> values)
+      : problem_(problem), values_(values), places_(problem, values) {}
+
+  /// The pairs that a term compares in a sample, by feature; nullopt where undefined, empty if its
+  /// kind cannot be drawn.
+  /// @param sample  from AnyProblem::paired()
+  [[nodiscard]] std::vector<std::optional<ScenePair>> pairs(const Term& term,
+                                                            const Sample& sample) const {
+    using enum Quantity;
+    const auto quantities = term.quantities;
+    const std::vector<Quantity> kinds(quantities.begin(), quantities.end());
+    std::vector<std::vector<PlacedFeature>> seen;
+    for (const int s : term.sensors) {
+      const Observation* observation = sample.observation(sensor(s).mount().name);
+      if (observation == nullptr || !is_known(sensor(s))) return {};
+      seen.push_back(places_.placed(s, *observation, sample));
+    }
+    if (kinds == std::vector{plane, plane}) return pairs_of_planes(seen[0], seen[1]);
+    std::vector<std::optional<ScenePair>> all;
+    for (const std::size_t i : compared(term, sample)) {
+      const PlacedFeature &a = seen.front()[i], &b = seen.back()[i];
+      if (kinds == std::vector{point}) {
+        all.push_back(alone(term, a.point));
+      } else if (kinds == std::vector{point, pixel}) {
+        all.push_back(pair_at_depth(a, b));
+      } else if (kinds == std::vector{ray, ray}) {
+        all.push_back(pair_of_rays(a, b));
+      } else if (kinds == std::vector{point, point} || kinds == std::vector{pose, pose}) {
+        const bool second = !is_camera(term.sensors[0]) && is_camera(term.sensors[1]);
+        all.push_back(both(term, second ? b.point : a.point, second ? a.point : b.point));
+      }
+    }
+    return all;
+  }
+
+  /// The features that a term compares: those that all of its sensors saw.
+  [[nodiscard]] std::vector<std::size_t> compared(const Term& term, const Sample& sample) const {
+    std::vector<std::size_t> all;
+    std::size_t count = 0;
+    std::vector<const Observation*> seen;
+    for (const int s : term.sensors) {
+      seen.push_back(sample.observation(sensor(s).mount().name));
+      if (seen.back() == nullptr) return all;
+      count = seen.size() == 1 ? seen[0]->features.size()
+                               : std::min(count, seen.back()->features.size());
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool by_all = std::all_of(seen.begin(), seen.end(),
+                                      [i](const auto* of) { return is_seen(of->features[i]); });
+      if (by_all) all.push_back(i);
+    }
+    return all;
+  }
+
+ private:
+  [[nodiscard]] const MountedSensor& sensor(int s) const {
+    return problem_.sensors()[static_cast<std::size_t>(s)];
+  }
+  [[nodiscard]] bool is_camera(int s) const { return sensor(s).sensor().in_own_frame(); }
+
+  /// Points, rays and poses have a place.
+  [[nodiscard]] static bool is_known(const MountedSensor& sensor) {
+    const std::optional<Quantity> places = sensor.sensor().places();
+    return places && *places != Quantity::reading;
+  }
+
+  /// A point compared with a sphere, or with a plane whose foot is computed later.
+  [[nodiscard]] std::optional<ScenePair> alone(const Term& term, const Vector3<double>& p) const {
+    if (term.options.type != PointToSphere::kType) return scene_pair(p, p);
+    const auto v = own<4>(term.parameters);
+    return pair_at_distance(p, {v[0], v[1], v[2]}, v[3]);
+  }
+  [[nodiscard]] std::optional<ScenePair> both(const Term& term, const Vector3<double>& measured,
+                                              const Vector3<double>& predicted) const {
+    if (term.options.type == PointDistance::kType) {
+      return pair_at_distance(measured, predicted, own<1>(term.parameters)[0]);
+    }
+    if (term.feature_size < 3) return std::nullopt;  // points that need not coincide
+    return scene_pair(measured, predicted);
+  }
+
+  template <std::size_t N>
+  [[nodiscard]] std::array<double, N> own(const std::vector<int>& parameters) const {
+    std::array<double, N> all{};
+    for (std::size_t i = 0; i < std::min(N, parameters.size()); ++i) {
+      if (parameters[i] >= 0) all[i] = values_[static_cast<std::size_t>(parameters[i])];
+    }
+    return all;
+  }
+
+  const AnyProblem& problem_;
+  std::span<const double> values_;
+  FeaturePlaces places_;
+};
 
 /// Residuals of the shown samples: by sample and term.
 using SceneResiduals = std::map<std::pair<int, int>, std::vector<double>>;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kinecal/solve/calibrate.hpp"
-#include "kinecal/trust/observability.hpp"
+#include "kinecal/trust/uncertainty/observability.hpp"
 
 namespace kinecal {
 

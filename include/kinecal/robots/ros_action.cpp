@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "kinecal/capture/robot_interface.hpp"
-#include "kinecal/files/messages/make.ipp"
-#include "kinecal/files/messages/message_fields.ipp"
+#include "kinecal/files/messages/make.hpp"
+#include "kinecal/files/messages/message_fields.hpp"
 #include "kinecal/robots/action_definitions.ipp"
 #include "kinecal/text/printable.hpp"
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
-#include "kinecal/solve/determined_spectrum.ipp"
+#include "kinecal/solve/determined_spectrum.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/solve/settle.hpp"
 

@@ -17,7 +17,7 @@
 #include "kinecal/study/error_sizes.hpp"
 #include "kinecal/study/exact_samples.hpp"
 #include "kinecal/study/measurement_noise.hpp"
-#include "kinecal/trust/pose_uncertainty.hpp"
+#include "kinecal/trust/uncertainty/pose_uncertainty.hpp"
 
 namespace kinecal {
 

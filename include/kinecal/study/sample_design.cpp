@@ -3,17 +3,207 @@
 #include "kinecal/study/sample_design.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "kinecal/study/design_rows.ipp"
+#include "kinecal/study/sample_rows.ipp"
 #include "kinecal/trust/plain_equations.hpp"
-#include "kinecal/trust/uncertainty.hpp"
+#include "kinecal/trust/uncertainty/uncertainty.hpp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
+
+// Derivatives of samples' rows by each measurement error.
+
+/// Collects the changes of each sample's rows by each error.
+class DesignRows {
+ public:
+  DesignRows(const MakeProblem& make, const FreeSet& free, ParameterValues values,
+             std::span<const Sample> samples, const MeasurementNoise& noise, Targets targets)
+      : changing_(make, values, samples), noise_(noise) {
+    const StudyRows rows = changing_.rows(changing_.samples(), &free);
+    const Stack no_rows{
+        {}, Eigen::MatrixXd(0, free.size()), {}, {}};  // of a sample that no block uses
+    stacks_.assign(changing_.samples().size(), no_rows);
+    for (const auto& [key, jacobian] : rows.jacobian) {
+      Stack& stack = stacks_[sample_of(key)];
+      stack.first[key] = stack.jacobian.rows();
+      stack.jacobian.conservativeResize(stack.jacobian.rows() + jacobian.rows(), free.size());
+      stack.jacobian.bottomRows(jacobian.rows()) = jacobian;
+    }
+    add_features();
+    add_joints();
+    if (targets == Targets::free) add_targets();
+  }
+
+  [[nodiscard]] std::vector<SampleDesign> designs() const {
+    std::vector<SampleDesign> all;
+    for (const Stack& stack : stacks_) {
+      const Eigen::MatrixXd j = stack.without_half(stack.jacobian);
+      const Eigen::MatrixXd scores = j.transpose() * stack.matrix(stack.errors);
+      all.push_back(
+          {PlainMatrix(stack.jacobian.transpose() * j), PlainMatrix(scores * scores.transpose())});
+    }
+    return all;
+  }
+
+ private:
+  /// The rows of a sample, and their changes by errors.
+  struct Stack {
+    std::map<FeatureKey, Eigen::Index> first;  ///< of each feature's rows
+    Eigen::MatrixXd jacobian;                  ///< weighted
+    std::vector<Eigen::VectorXd> errors;       ///< weighted change by one standard deviation
+    std::vector<Eigen::VectorXd> motions;      ///< weighted change by a motion of a free target
+
+    [[nodiscard]] Eigen::MatrixXd matrix(const std::vector<Eigen::VectorXd>& columns) const {
+      Eigen::MatrixXd all(jacobian.rows(), static_cast<Eigen::Index>(columns.size()));
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        all.col(static_cast<Eigen::Index>(i)) = columns[i];
+      }
+      return all;
+    }
+    /// (I - P / 2) times rows.
+    [[nodiscard]] Eigen::MatrixXd without_half(const Eigen::MatrixXd& of) const {
+      if (motions.empty()) return of;
+      Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix(motions));
+      qr.setThreshold(1e-8);  // points on a line do not determine the rotation about it
+      const Eigen::MatrixXd q =
+          qr.householderQ() * Eigen::MatrixXd::Identity(jacobian.rows(), qr.rank());
+      return of - 0.5 * q * (q.transpose() * of);
+    }
+  };
+
+  [[nodiscard]] static std::size_t sample_of(const FeatureKey& key) {
+    return static_cast<std::size_t>(std::get<0>(key));
+  }
+
+  /// Adds the difference of two evaluations to each sample, one error per group of keys.
+  /// @param half   of the change between them, in standard deviations
+  /// @param apart  features err independently; else all rows of a sample together
+  /// @param list   destination
+  void add(const StudyRows& after, const StudyRows& before, double half, bool apart,
+           std::vector<Eigen::VectorXd> Stack::*list = &Stack::errors) {
+    std::map<std::pair<std::size_t, int>, Eigen::VectorXd> changes;
+    for (const auto& [key, residual] : after.residual) {
+      const std::size_t sample = sample_of(key);
+      const Stack& stack = stacks_[sample];
+      const Eigen::VectorXd change = (residual - before.residual.at(key)) / (2.0 * half);
+      if (change.isZero(0.0)) continue;
+      Eigen::VectorXd& column = changes[{sample, apart ? std::get<2>(key) : 0}];
+      if (column.size() == 0) column.setZero(stack.jacobian.rows());
+      column.segment(stack.first.at(key), change.size()) += change;
+    }
+    for (auto& [of, column] : changes) (stacks_[of.first].*list).push_back(std::move(column));
+  }
+
+  void add_features() {
+    constexpr double kHalf = 0.01;  // standard deviations
+    for (const MountedSensor& sensor : changing_.problem().sensors()) {
+      const std::string& name = sensor.mount().name;
+      if (!changing_.measuring().contains(name)) continue;
+      const bool together = !takes_planes(name);  // different features change different rows
+      const std::size_t places = together ? 1 : most_features(name);
+      for (std::size_t error = 0; error < most_errors(sensor); ++error) {
+        for (std::size_t only = 0; only < places; ++only) {
+          const auto change = [&](std::size_t, const Observation& seen, std::size_t place) {
+            std::optional<FeatureChange> of;
+            if (!together && place != only) return of;
+            const auto errors = errors_of(sensor, seen, seen.features[place], noise_);
+            if (error < errors.size()) of = errors[error];
+            return of;
+          };
+          add(changing_.rows(changing_.with(name, change, kHalf)),
+              changing_.rows(changing_.with(name, change, -kHalf)), kHalf, together);
+        }
+      }
+    }
+  }
+
+  void add_joints() {
+    constexpr double kHalf = 0.01;
+    std::set<std::string> joints;
+    for (const Sample& sample : changing_.samples()) {
+      joints.insert(sample.joint_names.begin(), sample.joint_names.end());
+    }
+    const auto moved = [&](const std::string& joint, double change) {
+      std::vector<Sample> samples = changing_.samples();
+      for (Sample& sample : samples) {
+        for (std::size_t i = 0; i < sample.joint_names.size(); ++i) {
+          if (sample.joint_names[i] == joint) sample.joint_positions[i] += change;
+        }
+      }
+      return changing_.rows(samples);
+    };
+    for (const std::string& joint : joints) {
+      const double change = kHalf * noise_.joint;
+      if (change > 0.0) add(moved(joint, change), moved(joint, -change), kHalf, false);
+    }
+  }
+
+  /// Rigid motions of the features whose position on their link is known.
+  void add_targets() {
+    constexpr double kHalf = 1e-4;  // metres, radians
+    for (const MountedSensor& sensor : changing_.problem().sensors()) {
+      const std::string& name = sensor.mount().name;
+      if (changing_.measuring().contains(name)) continue;
+      for (int k = 0; k < 6; ++k) {
+        const Vector3<double> axis = Vector3<double>::Unit(k % 3);
+        const auto change = [&](std::size_t, const Observation& seen, std::size_t place) {
+          const Feature& feature = seen.features[place];
+          FeatureChange of;
+          of.point = k < 3 ? axis : axis.cross(feature.point - pivot_of(seen));
+          if (k >= 3 && feature.rotation) of.rotation = feature.rotation->transpose() * axis;
+          return std::optional(of);
+        };
+        add(changing_.rows(changing_.with(name, change, kHalf)),
+            changing_.rows(changing_.with(name, change, -kHalf)), kHalf, false, &Stack::motions);
+      }
+    }
+  }
+
+  [[nodiscard]] bool takes_planes(const std::string& name) const {
+    const AnyProblem& problem = changing_.problem();
+    for (int t = 0; t < problem.num_terms(); ++t) {
+      if (problem.term(t).pairs_features()) continue;
+      for (const int s : problem.term(t).sensors) {
+        if (problem.sensors()[static_cast<std::size_t>(s)].mount().name == name) return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::size_t most_features(const std::string& name) {
+    std::size_t most = 0;
+    for (const Sample& sample : changing_.samples()) {
+      const Observation* seen = sample.observation(name);
+      if (seen != nullptr) most = std::max(most, seen->features.size());
+    }
+    return most;
+  }
+  [[nodiscard]] std::size_t most_errors(const MountedSensor& sensor) {
+    std::size_t most = 0;
+    for (const Sample& sample : changing_.samples()) {
+      const Observation* seen = sample.observation(sensor.mount().name);
+      if (seen == nullptr || seen->features.empty()) continue;
+      most = std::max(most, errors_of(sensor, *seen, seen->features[0], noise_).size());
+    }
+    return most;
+  }
+
+  ChangingSamples changing_;
+  MeasurementNoise noise_;
+  std::vector<Stack> stacks_;
+};
 
 /// The contribution of a problem's priors for one sample.
 [[nodiscard]] PlainMatrix prior_of_one(const MakeProblem& make, const FreeSet& free,

@@ -10,13 +10,13 @@
 
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/solve/spectrum.hpp"
-#include "kinecal/trust/compared_frames.hpp"
+#include "kinecal/trust/captures/ruined.hpp"
 #include "kinecal/trust/inside_bounds.ipp"
-#include "kinecal/trust/joint_effects.ipp"
-#include "kinecal/trust/plausible_change.ipp"
-#include "kinecal/trust/repeat_noise.hpp"
-#include "kinecal/trust/ruined.hpp"
-#include "kinecal/trust/workspace_map.hpp"
+#include "kinecal/trust/noise/joint_effects.ipp"
+#include "kinecal/trust/noise/repeat_noise.hpp"
+#include "kinecal/trust/plausible_change.hpp"
+#include "kinecal/trust/uncertainty/compared_frames.hpp"
+#include "kinecal/trust/uncertainty/workspace_map.hpp"
 
 namespace kinecal {
 

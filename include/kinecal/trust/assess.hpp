@@ -9,18 +9,18 @@
 #include <vector>
 
 #include "kinecal/solve/calibrate.hpp"
-#include "kinecal/trust/alike_pixels.hpp"
-#include "kinecal/trust/captures.hpp"
-#include "kinecal/trust/common_noise.hpp"
-#include "kinecal/trust/folded_lens.hpp"
+#include "kinecal/trust/captures/captures.hpp"
 #include "kinecal/trust/held_out.hpp"
-#include "kinecal/trust/neighbours.hpp"
-#include "kinecal/trust/observability.hpp"
-#include "kinecal/trust/pose_uncertainty.hpp"
+#include "kinecal/trust/noise/common_noise.hpp"
+#include "kinecal/trust/noise/neighbours.hpp"
 #include "kinecal/trust/prior_pulls.hpp"
-#include "kinecal/trust/projection_map.hpp"
-#include "kinecal/trust/systematic_error.hpp"
-#include "kinecal/trust/weak_parameters.hpp"
+#include "kinecal/trust/systematic/alike_pixels.hpp"
+#include "kinecal/trust/systematic/folded_lens.hpp"
+#include "kinecal/trust/systematic/systematic_error.hpp"
+#include "kinecal/trust/uncertainty/observability.hpp"
+#include "kinecal/trust/uncertainty/pose_uncertainty.hpp"
+#include "kinecal/trust/uncertainty/projection_map.hpp"
+#include "kinecal/trust/uncertainty/weak_parameters.hpp"
 
 namespace kinecal {
 

@@ -7,10 +7,10 @@
 #include <set>
 #include <stdexcept>
 
-#include "kinecal/trust/capture_causes.hpp"
+#include "kinecal/trust/captures/capture_causes.hpp"
+#include "kinecal/trust/captures/ruined.hpp"
 #include "kinecal/trust/estimated_noise.hpp"
 #include "kinecal/trust/judge_input.hpp"
-#include "kinecal/trust/ruined.hpp"
 
 namespace kinecal {
 

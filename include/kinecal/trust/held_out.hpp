@@ -13,7 +13,7 @@
 #include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/solve/linear_fit.hpp"
-#include "kinecal/trust/pose_groups.hpp"
+#include "kinecal/trust/noise/pose_groups.hpp"
 
 namespace kinecal {
 

@@ -12,8 +12,8 @@
 #include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
 #include "kinecal/trust/assess.hpp"
-#include "kinecal/trust/joint_effects.ipp"
 #include "kinecal/trust/judge.hpp"
+#include "kinecal/trust/noise/joint_effects.ipp"
 
 namespace kinecal::detail {
 

@@ -3,21 +3,69 @@
 #include "kinecal/trust/judge_shards.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <memory>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "kinecal/solve/shards.hpp"
 #include "kinecal/trust/assess_shards.hpp"
 #include "kinecal/trust/estimated_noise.hpp"
 #include "kinecal/trust/judge_files.hpp"
 #include "kinecal/trust/judge_input.hpp"
-#include "kinecal/trust/shard_folds.ipp"
+#include "kinecal/trust/systematic/folded_lens.hpp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
+
+// Lenses that fold over, of samples in shards.
+
+/// Numbers of each sensor: where its lens folds over, the farthest corner of its image and the farthest feature.
+[[nodiscard]] std::vector<double> packed(const std::vector<FoldedLens>& folded,
+                                         const std::vector<MountedSensor>& sensors) {
+  std::vector<double> all;
+  for (const MountedSensor& mounted : sensors) {
+    FoldedLens of{mounted.mount().name, HUGE_VAL};
+    for (const FoldedLens& fold : folded) {
+      if (fold.sensor == of.sensor) of = fold;
+    }
+    all.insert(all.end(), {of.radius, of.corner, of.farthest});
+  }
+  return all;
+}
+
+/// folded_lenses() of the samples of all shards.
+/// @param samples_of  reads the samples of a shard: only where a lens is free
+[[nodiscard]] std::vector<FoldedLens> shard_folds(
+    const Shards& shards, const FreeSet& free, ParameterValues values,
+    const std::function<std::vector<Sample>(int shard)>& samples_of) {
+  const AnyProblem& problem = *shards.problem;
+  const std::vector<MountedSensor>& sensors = problem.sensors();
+  const bool frees = std::any_of(sensors.begin(), sensors.end(),
+                                 [&](const MountedSensor& one) { return frees_lens(one, free); });
+  if (!frees) return {};
+  const auto numbers_of = [&](int shard) {
+    return packed(folded_lenses(problem, free, values, samples_of(shard)), sensors);
+  };
+  std::vector<FoldedLens> folded;
+  for (const MountedSensor& one : sensors) folded.push_back({one.mount().name, HUGE_VAL});
+  for (const auto& of : numbers_of_shards(shards, name_at("folds", free, values), numbers_of)) {
+    for (std::size_t s = 0; s < folded.size(); ++s) {
+      folded[s].radius = std::min(folded[s].radius, of.at(3 * s));
+      folded[s].corner = std::max(folded[s].corner, of.at(3 * s + 1));
+      folded[s].farthest = std::max(folded[s].farthest, of.at(3 * s + 2));
+    }
+  }
+  std::erase_if(folded, [](const FoldedLens& fold) { return !std::isfinite(fold.radius); });
+  return folded;
+}
 
 /// Adds what needs samples at once, of a draw, to the assessment of all.
 void add_drawn(const Assessment& drawn, Assessment& all) {

@@ -30,7 +30,7 @@
 #include <vector>
 
 #include "kinecal/problem/any_problem.hpp"
-#include "kinecal/trust/pose_uncertainty.hpp"
+#include "kinecal/trust/uncertainty/pose_uncertainty.hpp"
 
 namespace kinecal {
 

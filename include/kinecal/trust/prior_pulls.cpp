@@ -8,7 +8,7 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/f_distribution.hpp"
-#include "kinecal/trust/weak_parameters.hpp"
+#include "kinecal/trust/uncertainty/weak_parameters.hpp"
 
 namespace kinecal {
 

@@ -18,7 +18,7 @@
 
 #include "kinecal/parameters/parameter_table.hpp"
 #include "kinecal/solve/linear_fit.hpp"
-#include "kinecal/trust/uncertainty.hpp"
+#include "kinecal/trust/uncertainty/uncertainty.hpp"
 
 namespace kinecal {
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "kinecal/files/images/png_bytes.hpp"
-#include "kinecal/files/messages/make.ipp"
+#include "kinecal/files/messages/make.hpp"
 #include "support/error_of.hpp"
 
 namespace kinecal::detail {

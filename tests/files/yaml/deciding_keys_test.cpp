@@ -1,4 +1,4 @@
-#include "kinecal/files/yaml/deciding_keys.ipp"
+#include "kinecal/files/yaml/deciding_keys.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

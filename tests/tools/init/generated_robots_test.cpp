@@ -15,7 +15,7 @@
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
-#include "kinecal/trust/observability.hpp"
+#include "kinecal/trust/uncertainty/observability.hpp"
 #include "support/repetitions.hpp"
 #include "support/temporary_folder.hpp"
 

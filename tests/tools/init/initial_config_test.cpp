@@ -15,7 +15,7 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
-#include "kinecal/trust/observability.hpp"
+#include "kinecal/trust/uncertainty/observability.hpp"
 #include "support/every_robot.hpp"
 #include "support/paths.hpp"
 #include "support/temporary_folder.hpp"

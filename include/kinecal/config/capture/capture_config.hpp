@@ -15,14 +15,14 @@
 #include <variant>
 #include <vector>
 
-#include "kinecal/capture/april_tag_finder.hpp"
-#include "kinecal/capture/charuco_finder.hpp"
-#include "kinecal/capture/checkerboard_finder.hpp"
-#include "kinecal/capture/circle_grid_finder.hpp"
-#include "kinecal/capture/led_finder.hpp"
-#include "kinecal/capture/plane_finder.hpp"
-#include "kinecal/capture/robot_finder.hpp"
-#include "kinecal/capture/scan_finder.hpp"
+#include "kinecal/capture/finders/april_tag_finder.hpp"
+#include "kinecal/capture/finders/charuco_finder.hpp"
+#include "kinecal/capture/finders/checkerboard_finder.hpp"
+#include "kinecal/capture/finders/circle_grid_finder.hpp"
+#include "kinecal/capture/finders/led_finder.hpp"
+#include "kinecal/capture/finders/plane_finder.hpp"
+#include "kinecal/capture/finders/robot_finder.hpp"
+#include "kinecal/capture/finders/scan_finder.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/robot.hpp"
 

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <optional>
 
-#include "kinecal/config/doubts/exchanged_joints.ipp"
+#include "kinecal/config/doubts/exchanged_joints.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
-#include "kinecal/files/urdf/urdf_text.ipp"
+#include "kinecal/files/urdf/urdf_places.hpp"
 
 namespace kinecal {
 
@@ -51,7 +51,7 @@ struct FurthestOutside {
 void check_offsets(const CalibrationInput& input, const ParameterTable& calibrated,
                    Diagnostics& diagnostics) {
   constexpr double kHalfTurn = 2.8;  // radians: to 20 degrees
-  std::optional<detail::UrdfText> source;
+  std::optional<detail::UrdfPlaces> source;
   if (!input.urdf_text.empty()) source.emplace(input.urdf_text, input.urdf);
   for (const detail::UsedJoint& used :
        detail::used_joints(input.config, input.robot, input.samples)) {
@@ -62,10 +62,7 @@ void check_offsets(const CalibrationInput& input, const ParameterTable& calibrat
     const double change =
         detail::as_angle(joint, calibrated[parameter].value - calibrated[parameter].initial);
     SourceLocation place{input.urdf, 0};
-    if (source) {
-      const pugi::xml_node node = source->joint(joint.name), limit = node.child("limit");
-      place = source->place(limit ? limit : node);
-    }
+    if (source) place = source->place_or_joint(joint.name, "limit");
     const std::string subject =
         fmt::format("the offset of '{}' is {}", joint.name, detail::offset_text(joint, offset));
     const detail::FurthestOutside most = detail::furthest_outside(used, offset);

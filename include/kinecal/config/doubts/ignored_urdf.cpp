@@ -5,19 +5,18 @@
 #include <algorithm>
 #include <string>
 
-#include "kinecal/files/urdf/urdf_text.ipp"
+#include "kinecal/files/urdf/urdf_places.hpp"
 #include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal::detail {
 
 void check_ignored_urdf(const Robot& robot, const std::string& text,
                         const std::string& name_for_messages, Diagnostics& diagnostics) {
-  const UrdfText source(text, name_for_messages);
-  for (const pugi::xml_node node : source.robot().children("joint")) {
-    const std::string name = node.attribute("name").value();
+  for (const JointElement& element : UrdfPlaces(text, name_for_messages).joints()) {
+    const std::string& name = element.name;
     if (!robot.has_joint(name)) continue;
     const Joint& joint = robot.joint(name);
-    const std::string mimicked = node.child("mimic").attribute("joint").value();
+    const std::string& mimicked = element.mimicked;
     if (!mimicked.empty() && !joint.mimic) {
       const std::string missing = "joint '" + name + "' is not in the sample";
       const bool is_cause =
@@ -30,15 +29,15 @@ void check_ignored_urdf(const Robot& robot, const std::string& text,
           (is_cause ? ", which the samples do not have: correct <mimic>" : "") +
           (robot.has_joint(mimicked) ? "" : did_you_mean(mimicked, robot.joint_names()));
       if (is_cause) {
-        diagnostics.error(source.place(node), sentence);
+        diagnostics.error(element.place, sentence);
       } else {
-        diagnostics.warning(source.place(node), sentence);
+        diagnostics.warning(element.place, sentence);
       }
     }
-    if (to_string(joint.type) != node.attribute("type").value()) {
-      diagnostics.warning(source.place(node), "joint '" + name +
-                                                  "' has an axis of length zero; it is taken as "
-                                                  "planar, so no chain can contain it");
+    if (to_string(joint.type) != element.type) {
+      diagnostics.warning(element.place, "joint '" + name +
+                                             "' has an axis of length zero; it is taken as "
+                                             "planar, so no chain can contain it");
     }
   }
 }

@@ -7,15 +7,123 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
-#include "kinecal/config/doubts/exchanged_joints.ipp"
-#include "kinecal/config/doubts/joint_limits.ipp"
-#include "kinecal/config/doubts/joint_order.ipp"
+#include "kinecal/config/doubts/exchanged_joints.hpp"
+#include "kinecal/config/doubts/joint_limits.hpp"
 #include "kinecal/config/doubts/occurrences.hpp"
-#include "kinecal/config/doubts/outside_limits.ipp"
+#include "kinecal/files/diagnostics.hpp"
 
 namespace kinecal::detail {
+namespace {
+
+// Positions under the names of another order of the joints: that of the alphabet, or reversed.
+
+/// Another order of the joints: joint j gets the positions named after joint order[j].
+struct JointOrder {
+  std::vector<std::size_t> order;
+  const char* how;
+};
+
+/// Orders that drivers and people commonly produce, other than the one as given.
+[[nodiscard]] std::vector<JointOrder> joint_orders(std::span<const UsedJoint> joints) {
+  std::vector<std::size_t> sorted(joints.size());
+  std::iota(sorted.begin(), sorted.end(), 0);
+  std::vector<std::size_t> reversed(sorted.rbegin(), sorted.rend()), inverse = sorted;
+  std::sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
+    return joints[a].joint.name < joints[b].joint.name;
+  });
+  for (std::size_t i = 0; i < sorted.size(); ++i) inverse[sorted[i]] = i;
+  std::vector<JointOrder> orders{
+      {sorted, "if they are in the order of the chain and the names in that of the alphabet"},
+      {inverse, "if they are in the order of the alphabet and the names in that of the chain"},
+      {reversed, "if they are in reverse order"}};
+  std::erase_if(orders, [](const JointOrder& order) {
+    return std::is_sorted(order.order.begin(), order.order.end());
+  });
+  return orders;
+}
+
+/// Error: names and positions are in different orders.
+/// @returns  true if it was reported
+bool report_order(std::span<const UsedJoint> joints, std::span<const Sample> samples,
+                  Diagnostics& diagnostics) {
+  std::size_t all = 0;
+  for (const UsedJoint& joint : joints) all += joint.positions.size();
+  const auto first = std::find_if(joints.begin(), joints.end(), [](const UsedJoint& joint) {
+    return count_outside(joint, joint) > 0;
+  });
+  const std::size_t before = count_all_outside(joints);
+  if (first == joints.end() || !are_many(before, samples.size())) return false;
+  for (const auto& [order, how] : joint_orders(joints)) {
+    std::size_t after = 0;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      after += count_outside(joints[j], joints[order[j]]);
+    }
+    if (!explains(before, after, all)) continue;
+    std::size_t at = 0;
+    while (!is_outside(*first, first->positions[at])) ++at;
+    diagnostics.error(
+        place_of(samples, first->samples[at]),
+        fmt::format("position of '{}' is {:.4g}; its limits are {}; all positions are within their "
+                    "limits {}; compare the order of names and positions with the driver",
+                    first->joint.name, first->positions[at], first->limits_text(), how));
+    return true;
+  }
+  return false;
+}
+
+// Reports positions of a joint that are outside its limits.
+
+/// What a turn into the limits means; the other sign may explain the same.
+[[nodiscard]] std::string turned_text(double turn, bool or_negated) {
+  return fmt::format(
+      fmt::runtime(
+          or_negated
+              ? "; with {:+.3g} rad, or with the other sign, they are inside: is its zero or its "
+                "direction another one than the URDF's?"
+              : "; with {:+.3g} rad they are inside: is its zero another one than the URDF's?"),
+      turn);
+}
+
+/// Reports positions outside the limits: far (doubt), slightly or by a turn (warning).
+void report_outside(const UsedJoint& joint, std::span<const Sample> samples,
+                    Diagnostics& diagnostics) {
+  if (!joint.limits) return;
+  constexpr double kRounding = 1e-3;  // of limits in a URDF, radians or metres
+  Occurrences far, near;
+  double most_far = 0.0, most_near = 0.0;
+  for (std::size_t i = 0; i < joint.positions.size(); ++i) {
+    const double excess = excess_of(joint, joint.positions[i]);
+    if (excess <= kRounding) continue;
+    const bool is_far = is_outside(joint, joint.positions[i]);
+    (is_far ? far : near).add(joint.samples[i]);
+    double& most = is_far ? most_far : most_near;
+    most = std::max(most, excess);
+  }
+  const auto text = [&](const Occurrences& found, double most) {
+    return fmt::format("position of '{}' is outside its limits {}{}, by up to {:.3g} {}",
+                       joint.joint.name, joint.limits_text(), found.others(), most,
+                       position_unit(joint.joint.type));
+  };
+  if (far.count > 0) {
+    const std::optional<double> turn = turn_into_limits(joint);
+    diagnostics.doubt(
+        place_of(samples, far.first),
+        text(far, most_far) +
+            (turn ? turned_text(*turn, fits_negated(joint))
+                  : "; is it the position of another joint, in another unit, or the URDF of "
+                    "another robot?"));
+  } else if (near.count > 0) {
+    diagnostics.warning(place_of(samples, near.first), text(near, most_near));
+  }
+}
+
+}  // namespace
 
 /// A joint without limits beyond this looks wound up, or in degrees.
 inline constexpr double kWoundUp = 4 * std::numbers::pi;

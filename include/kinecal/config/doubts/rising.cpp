@@ -12,7 +12,7 @@
 #include "kinecal/config/doubts/occurrences.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
-#include "kinecal/files/urdf/urdf_text.ipp"
+#include "kinecal/files/urdf/urdf_places.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/solve/statistics.hpp"
 
@@ -20,12 +20,13 @@ namespace kinecal {
 
 std::map<std::string, double> rising_of(const std::string& text,
                                         const std::string& name_for_messages) {
-  const detail::UrdfText source(text, name_for_messages);
+  const detail::UrdfPlaces source(text, name_for_messages);
   Diagnostics diagnostics;
   std::map<std::string, double> rising;
-  for (const pugi::xml_node joint : source.robot().children("joint")) {
-    const double value = source.numbers(joint.child("calibration"), "rising", 1, diagnostics)[0];
-    if (value != 0.0) rising.emplace(joint.attribute("name").value(), value);
+  for (const detail::JointElement& joint : source.joints()) {
+    const double value =
+        source.numbers(joint.name, "calibration", "rising", 1, diagnostics).front();
+    if (value != 0.0) rising.emplace(joint.name, value);
   }
   diagnostics.throw_if_errors();
   return rising;
@@ -112,9 +113,9 @@ void check_rising(const Config& config, const Robot& robot, const std::string& t
     if (found != rising.end()) used.insert(*found);
   }
   if (used.empty() || samples.empty()) return;
-  const UrdfText source(text, name_for_messages);
+  const UrdfPlaces source(text, name_for_messages);
   const auto& [name, value] = *used.begin();
-  const SourceLocation place = source.place(source.joint(name).child("calibration"));
+  const SourceLocation place = source.place(name, "calibration");
   if (recorded == Recorded::after) {
     diagnostics.warning(
         place,

@@ -6,17 +6,274 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <set>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "kinecal/config/doubts/camera_features.ipp"
 #include "kinecal/config/doubts/occurrences.hpp"
-#include "kinecal/config/doubts/point_spreads.ipp"
 #include "kinecal/config/doubts/same_feature.ipp"
+#include "kinecal/config/doubts/unseen_corners.hpp"
+#include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/config/registry.hpp"
+#include "kinecal/files/diagnostics.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 
 namespace kinecal::detail {
+namespace {
+
+// Checks specific to cameras: features that are not pixels, intrinsics of another image, a driver
+// that has stopped.
+
+/// The camera_info of the first sample with a size; nullptr if absent.
+[[nodiscard]] const CameraInfo* sized_camera(const RecordedPoints& recorded,
+                                             std::span<const Sample> samples) {
+  const Observation* seen = samples[recorded.samples.front()].observation(recorded.model.name);
+  const bool sized = seen->camera && seen->camera->width > 0 && seen->camera->height > 0;
+  return sized ? &*seen->camera : nullptr;
+}
+
+/// Doubt: pixels outside of the image.
+/// @param pixels  (u, v, any) of each of the recorded points
+/// @param few     fraction of them that may be outside
+void check_inside(const RecordedPoints& recorded, std::span<const Vector3<double>> pixels,
+                  const CameraInfo& camera, double few, std::span<const Sample> samples,
+                  Diagnostics& diagnostics) {
+  const double width = camera.width, height = camera.height;
+  std::size_t last = 0;  // sample already counted
+  double all = 0.0;
+  Occurrences outside;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const double u = pixels[i].x(), v = pixels[i].y();
+    const bool is_outside =
+        u < -0.1 * width || u > 1.1 * width || v < -0.1 * height || v > 1.1 * height;
+    all += is_outside ? 1.0 : 0.0;
+    if (!is_outside || (outside.count > 0 && last == recorded.samples[i])) continue;
+    last = recorded.samples[i];
+    outside.add(last);
+  }
+  if (all <= few * static_cast<double>(pixels.size())) return;
+  diagnostics.doubt(place_of(samples, outside.first),
+                    fmt::format("a feature of sensor '{}' is outside its image of {}x{} pixels{}; "
+                                "is it the camera_info of another camera or size?",
+                                recorded.model.name, width, height, outside.others()));
+}
+
+/// Error or doubt: features that are not pixels.
+void check_pixels(const RecordedPoints& recorded, std::span<const Sample> samples,
+                  Diagnostics& diagnostics) {
+  check_unseen(recorded.model.name, samples, diagnostics);
+  const CameraInfo* camera = sized_camera(recorded, samples);
+  if (camera == nullptr) return;
+  double most = 0.0;
+  for (const auto& pixel : recorded.points)
+    most = std::max(most, pixel.head<2>().cwiseAbs().maxCoeff());
+  if (most < 4.0 && recorded.points.size() > 3) {
+    diagnostics.error(
+        place_of(samples, recorded.samples.front()),
+        fmt::format("no feature of sensor '{}' is beyond {:.3g} pixels of an image of "
+                    "{}x{}; they look like metres or normalized coordinates",
+                    recorded.model.name, most, camera->width, camera->height));
+  } else {
+    check_inside(recorded, recorded.points, *camera, 0.0, samples, diagnostics);
+  }
+}
+
+/// Error or doubt: points of a depth camera that contradict its camera_info.
+void check_depth_points(const RecordedPoints& recorded, std::span<const Sample> samples,
+                        Diagnostics& diagnostics) {
+  std::vector<Vector3<double>> pixels;
+  for (std::size_t i = 0; i < recorded.points.size(); ++i) {
+    const std::size_t s = recorded.samples[i];
+    const Observation& seen = *samples[s].observation(recorded.model.name);
+    const std::shared_ptr<const AnySensor> sensor = sensor_of(recorded.model);
+    pixels.push_back(sensor->measurement(recorded.points[i], sensor->settings(seen)));
+    if (pixels.back().z() > 0.0) continue;
+    diagnostics.error(
+        place_of(samples, s),
+        fmt::format(
+            "sensor '{}' has a point {:.4g} m away, which its driver made of a depth of "
+            "{:.4g} m by z_offset_mm {:.6g} and z_scaling {:.6g} of ext_camera_info; one of "
+            "them is wrong",
+            recorded.model.name, recorded.points[i].z(), pixels.back().z(),
+            1e3 * seen.camera->z_offset, seen.camera->z_scaling));
+    return;
+  }
+  const CameraInfo* camera = sized_camera(recorded, samples);
+  constexpr double kFew = 0.05;  // a driver may give points beyond its image
+  if (camera != nullptr) check_inside(recorded, pixels, *camera, kFew, samples, diagnostics);
+}
+
+/// Doubt: a principal point far from the middle of the image, as if from another resolution.
+void check_principal_points(std::span<const Sample> samples, Diagnostics& diagnostics) {
+  std::set<std::string> checked;
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    for (const Observation& seen : samples[s].observations) {
+      if (!seen.camera || !checked.insert(seen.sensor).second) continue;
+      const CameraInfo& camera = *seen.camera;
+      const auto is_far = [](double point, int size) {
+        constexpr double kFar = 0.3;  // of the size of the image
+        return size > 0 && std::abs(point / size - 0.5) > kFar;
+      };
+      const auto doubt = [&](const char* matrix, double cx, double cy) {
+        if (!is_far(cx, camera.width) && !is_far(cy, camera.height)) return false;
+        diagnostics.doubt(
+            place_of(samples, s),
+            fmt::format(
+                "the principal point of sensor '{}' is ({:.4g}, {:.4g}) by {}, far from the "
+                "middle of its image of {}x{} pixels; is it the camera_info of another "
+                "resolution?",
+                seen.sensor, cx, cy, matrix, camera.width, camera.height));
+        return true;
+      };
+      if (camera.k[0] > 0.0 && doubt("K", camera.k[2], camera.k[5])) continue;
+      if (camera.p[0] > 0.0) doubt("P", camera.p[2], camera.p[6]);
+    }
+  }
+}
+
+/// Error: a camera that records the same in every sample although the robot moves.
+void check_frozen(const RecordedPoints& recorded, std::span<const Sample> samples,
+                  Diagnostics& diagnostics) {
+  const auto last = recorded.samples.back();
+  if (!recorded.is_measured || !recorded.is_constant || recorded.samples.front() == last) return;
+  if (samples[last].joint_positions == samples[recorded.samples.front()].joint_positions) return;
+  diagnostics.error(
+      place_of(samples, recorded.samples.front()),
+      fmt::format("sensor '{}' records the same features, to the last digit, in every "
+                  "sample though the robot moves; its driver or topic has stopped",
+                  recorded.model.name));
+}
+
+}  // namespace
+
+// Compares how points spread about their center: those of a fixed sensor, and those of the arm.
+// Uses the median and drops the farthest tenth, so that a few distant points do not decide.
+
+double spread_of(std::span<const Vector3<double>> points) {
+  if (points.empty()) return 0.0;
+  Vector3<double> center;
+  std::vector<double> numbers(points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(points.begin(), points.end(), numbers.begin(),
+                   [axis](const auto& point) { return point(axis); });
+    center(axis) = median_of(numbers);
+  }
+  std::transform(points.begin(), points.end(), numbers.begin(),
+                 [&](const auto& point) { return (point - center).squaredNorm(); });
+  std::sort(numbers.begin(), numbers.end());
+  const std::size_t near = numbers.size() - (numbers.size() + 9) / 10;
+  const double sum =
+      std::accumulate(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(near), 0.0);
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, near)));
+}
+
+/// Keeps the points of samples in which the other model has points, too.
+[[nodiscard]] inline RecordedPoints together_with(const RecordedPoints& other,
+                                                  const RecordedPoints& all) {
+  RecordedPoints kept = all;
+  kept.points.clear();
+  kept.samples.clear();
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    if (!std::binary_search(other.samples.begin(), other.samples.end(), all.samples[i])) continue;
+    kept.points.push_back(all.points[i]);
+    kept.samples.push_back(all.samples[i]);
+  }
+  return kept;
+}
+
+/// The points of a moving model in the base, for the robot of the URDF.
+[[nodiscard]] inline std::vector<Vector3<double>> points_in_base(const RecordedPoints& recorded,
+                                                                 std::span<const Sample> samples) {
+  std::vector<Vector3<double>> points;
+  Pose<double> base_T_sensor;
+  for (std::size_t i = 0; i < recorded.points.size(); ++i) {
+    if (i == 0 || recorded.samples[i] != recorded.samples[i - 1]) {
+      base_T_sensor = forward_kinematics(recorded.chain, [&](const std::string& joint) {
+        return samples[recorded.samples[i]].position(joint).value_or(0.0);
+      });
+    }
+    points.push_back(base_T_sensor * recorded.points[i]);
+  }
+  return points;
+}
+
+/// The unit mistake that explains a factor between lengths; empty if none does.
+[[nodiscard]] inline std::string unit_of_factor(double factor) {
+  struct Unit {
+    double factor;
+    const char* name;
+  };
+  constexpr Unit kUnits[] = {{1000.0, "millimetres"},
+                             {100.0, "centimetres"},
+                             {39.37, "inches"},
+                             {3.281, "feet"},
+                             {0.001, "kilometres"}};
+  for (const Unit& unit : kUnits) {
+    if (std::abs(std::log(factor / unit.factor)) < std::log(1.3)) return unit.name;
+  }
+  return {};
+}
+
+/// Error or doubt: the two spreads differ.
+/// @param fixed  of a sensor that does not move; @param arm  of one that moves
+inline void compare_spreads(const RecordedPoints& fixed, const RecordedPoints& arm,
+                            std::span<const Sample> samples, double reach,
+                            Diagnostics& diagnostics) {
+  const double of_fixed = spread_of(fixed.points), of_arm = spread_of(points_in_base(arm, samples));
+  const double least = std::max(0.15, 0.1 * reach);  // metres: errors of zeros move less
+  const double factor = of_fixed / std::max(of_arm, 1e-9);
+  if (std::abs(of_fixed - of_arm) <= least || (factor > 1.0 / 3.0 && factor < 3.0)) return;
+  const SourceLocation place = place_of(samples, fixed.samples.front());
+  const std::string text = fmt::format(
+      "points of '{}' move over {:.3g} m (rms about their center), those of sensor '{}' "
+      "over {:.3g} m",
+      arm.model.name, of_arm, fixed.model.name, of_fixed);
+  const std::string unit = unit_of_factor(factor);
+  if (fixed.is_constant) {
+    diagnostics.error(
+        place,
+        text + fmt::format("; it records the same features in every sample though the robot "
+                           "moves: its driver or topic has stopped, or the frames of '{}' and "
+                           "'{}' are exchanged in the configuration",
+                           arm.model.name, fixed.model.name));
+  } else if (!unit.empty()) {
+    diagnostics.error(place,
+                      text + fmt::format("; they look like {}; points must be in metres", unit));
+  } else {
+    diagnostics.doubt(place, text + "; is it the right sensor, frame and unit?");
+  }
+}
+
+void check_spreads(const Config& config, const Robot& robot, std::span<const Sample> samples,
+                   Diagnostics& diagnostics) {
+  const std::vector<RecordedPoints> all = recorded_points(config, robot, samples);
+  std::set<std::pair<const RecordedPoints*, const RecordedPoints*>> compared;
+  for (const StepConfig& step : config.steps) {
+    for (const BlockConfig& block : step.error_blocks) {
+      const BlockEntry* entry = entry_of(block);
+      if (entry == nullptr || entry->read_as != PointToPoint::kType) continue;
+      std::vector<const RecordedPoints*> of_block;
+      for (const std::string& model : block.models) {
+        for (const RecordedPoints& recorded : all) {
+          if (recorded.model.name == model && recorded.in_metres) of_block.push_back(&recorded);
+        }
+      }
+      if (of_block.size() != 2 || of_block[0]->moves == of_block[1]->moves) continue;
+      const RecordedPoints* fixed = of_block[of_block[0]->moves ? 1 : 0];
+      const RecordedPoints* arm = of_block[of_block[0]->moves ? 0 : 1];
+      // The view of a moving camera depends on its mount, which may be unknown.
+      if (!arm->model.type.starts_with("chain")) continue;
+      if (!compared.insert({fixed, arm}).second || fixed->points.size() < 3) continue;
+      compare_spreads(together_with(*arm, *fixed), together_with(*fixed, *arm), samples,
+                      reach_of(robot, arm->chain), diagnostics);
+    }
+  }
+}
 
 /// Adds the model's points in one sample.
 /// @param first  the observation of the first sample with one

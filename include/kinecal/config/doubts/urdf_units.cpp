@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "kinecal/config/doubts/used_joints.hpp"
-#include "kinecal/files/urdf/urdf_text.ipp"
+#include "kinecal/files/urdf/urdf_places.hpp"
 
 namespace kinecal::detail {
 
@@ -32,7 +32,7 @@ struct SuspectNumber {
 }
 
 /// Long origins: millimetres.  Error if there are several or a very long one, else doubt.
-inline void check_lengths(const UrdfText& source, const std::vector<const Joint*>& joints,
+inline void check_lengths(const UrdfPlaces& source, const std::vector<const Joint*>& joints,
                           Diagnostics& diagnostics) {
   constexpr double kLong = 20.0, kVeryLong = 100.0, kTiny = 0.005;  // metres
   std::vector<SuspectNumber> long_ones;
@@ -43,9 +43,7 @@ inline void check_lengths(const UrdfText& source, const std::vector<const Joint*
     sum += length;
     if (length > 0.0) ++nonzero;
     if (length <= kLong) continue;
-    const pugi::xml_node node = source.joint(joint->name);
-    const pugi::xml_node origin = node.child("origin");
-    long_ones.push_back({joint->name, source.place(origin ? origin : node), length});
+    long_ones.push_back({joint->name, source.place_or_joint(joint->name, "origin"), length});
   }
   if (long_ones.empty()) {
     if (nonzero < 2 || sum >= kTiny) return;
@@ -69,19 +67,20 @@ inline void check_lengths(const UrdfText& source, const std::vector<const Joint*
 }
 
 /// Roll, pitch or yaw beyond a turn: degrees.
-inline void check_angles(const UrdfText& source, const std::vector<const Joint*>& joints,
+inline void check_angles(const UrdfPlaces& source, const std::vector<const Joint*>& joints,
                          Diagnostics& diagnostics) {
   constexpr double kTurn = 2 * std::numbers::pi + 0.01;  // rounded in many files
   std::vector<SuspectNumber> large;
   bool are_whole = true;
   for (const Joint* joint : joints) {
-    const pugi::xml_node origin = source.joint(joint->name).child("origin");
     Diagnostics checked_before;
-    const Vector3<double> rpy = source.vector(origin, "rpy", checked_before);
-    const double most = rpy.cwiseAbs().maxCoeff();
+    double most = 0.0;
+    for (const double angle : source.numbers(joint->name, "origin", "rpy", 3, checked_before)) {
+      most = std::max(most, std::abs(angle));
+    }
     if (most <= kTurn) continue;
     are_whole = are_whole && is_multiple(most, 0.5);
-    large.push_back({joint->name, source.place(origin), most});
+    large.push_back({joint->name, source.place(joint->name, "origin"), most});
   }
   if (large.empty()) return;
   const std::string text = fmt::format(
@@ -96,7 +95,7 @@ inline void check_angles(const UrdfText& source, const std::vector<const Joint*>
 }
 
 /// Limits such as ±180 of rotating joints: degrees.  1e2, 1e3, … stand for no limit.
-inline void check_limits(const UrdfText& source, const std::vector<const Joint*>& joints,
+inline void check_limits(const UrdfPlaces& source, const std::vector<const Joint*>& joints,
                          Diagnostics& diagnostics) {
   std::vector<SuspectNumber> large;
   std::size_t limited = 0;
@@ -106,9 +105,7 @@ inline void check_limits(const UrdfText& source, const std::vector<const Joint*>
     const double most = std::max(std::abs(joint->limits->lower), std::abs(joint->limits->upper));
     const bool no_limit = is_multiple(std::log10(std::max(most, 1.0)), 1.0);
     if (most < 30.0 || most > 1000.0 || !is_multiple(most, 0.5) || no_limit) continue;
-    const pugi::xml_node node = source.joint(joint->name);
-    const pugi::xml_node limit = node.child("limit");
-    large.push_back({joint->name, source.place(limit ? limit : node), most});
+    large.push_back({joint->name, source.place_or_joint(joint->name, "limit"), most});
   }
   if (large.empty() || 2 * large.size() < limited) return;
   diagnostics.doubt(
@@ -120,12 +117,12 @@ inline void check_limits(const UrdfText& source, const std::vector<const Joint*>
 }
 
 /// Reversed limits.
-inline void check_order_of_limits(const UrdfText& source, const std::vector<const Joint*>& joints,
+inline void check_order_of_limits(const UrdfPlaces& source, const std::vector<const Joint*>& joints,
                                   Diagnostics& diagnostics) {
   for (const Joint* joint : joints) {
     if (!joint->limits || !(joint->limits->lower > joint->limits->upper)) continue;
     diagnostics.warning(
-        source.place(source.joint(joint->name).child("limit")),
+        source.place(joint->name, "limit"),
         fmt::format("the limits of joint '{}' are not used: lower {:.6g} is above upper {:.6g}; "
                     "are they exchanged?",
                     joint->name, joint->limits->lower, joint->limits->upper));
@@ -134,7 +131,7 @@ inline void check_order_of_limits(const UrdfText& source, const std::vector<cons
 
 void check_urdf_units(const Config& config, const Robot& robot, const std::string& text,
                       const std::string& name_for_messages, Diagnostics& diagnostics) {
-  const UrdfText source(text, name_for_messages);
+  const UrdfPlaces source(text, name_for_messages);
   const std::vector<const Joint*> joints = joints_between(config, robot);
   check_lengths(source, joints, diagnostics);
   check_angles(source, joints, diagnostics);

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-#include "kinecal/config/doubts/joint_limits.ipp"
+#include "kinecal/config/doubts/joint_limits.hpp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/kinematics/chain.hpp"
 

@@ -9,7 +9,7 @@
 #include <system_error>
 #include <vector>
 
-#include "kinecal/files/urdf/urdf_text.ipp"
+#include "kinecal/files/urdf/urdf_places.hpp"
 #include "kinecal/text/shell_command.hpp"
 
 namespace kinecal::detail {
@@ -27,15 +27,15 @@ std::string xacro_command(const std::string& file) {
 }
 
 /// Error: remnants that may hold a part of the robot.
-inline void report_missing(const UrdfText& source, const std::vector<XacroRemnant>& remnants,
+inline void report_missing(const std::string& file, const std::vector<XacroLeft>& remnants,
                            Diagnostics& diagnostics) {
-  const auto missing = [](const XacroRemnant& remnant) { return !remnant.is_inert; };
+  const auto missing = [](const XacroLeft& remnant) { return !remnant.is_inert; };
   const auto first = std::find_if(remnants.begin(), remnants.end(), missing);
   if (first == remnants.end()) return;
   const auto count = std::count_if(remnants.begin(), remnants.end(), missing);
-  const std::string command = xacro_command(source.file());
+  const std::string command = xacro_command(file);
   diagnostics.error(
-      source.place(first->element),
+      first->place,
       fmt::format(
           "{} is xacro that was not expanded{}; links, joints or numbers of the robot may be "
           "missing; "
@@ -47,29 +47,27 @@ inline void report_missing(const UrdfText& source, const std::vector<XacroRemnan
 }
 
 /// Warning: remnants that nothing depends on.
-inline void report_inert(const UrdfText& source, const std::vector<XacroRemnant>& remnants,
-                         Diagnostics& diagnostics) {
+inline void report_inert(const std::vector<XacroLeft>& remnants, Diagnostics& diagnostics) {
   constexpr std::size_t kMost = 5;  // number to list
-  std::vector<XacroRemnant> inert;
+  std::vector<XacroLeft> inert;
   std::copy_if(remnants.begin(), remnants.end(), std::back_inserter(inert),
-               [](const XacroRemnant& remnant) { return remnant.is_inert; });
+               [](const XacroLeft& remnant) { return remnant.is_inert; });
   if (inert.empty()) return;
   std::string others;
   for (std::size_t i = 1; i < std::min(inert.size(), kMost); ++i) {
-    others += fmt::format(", {} in line {}", inert[i].text, source.place(inert[i].element).line);
+    others += fmt::format(", {} in line {}", inert[i].text, inert[i].place.line);
   }
   if (inert.size() > kMost) others += fmt::format(" and {} more", inert.size() - kMost);
-  diagnostics.warning(source.place(inert[0].element),
+  diagnostics.warning(inert[0].place,
                       fmt::format("xacro left {}{}; ignored, for no link or joint depends on {}",
                                   inert[0].text, others, inert.size() == 1 ? "it" : "them"));
 }
 
 void check_xacro(const std::string& text, const std::string& name_for_messages,
                  Diagnostics& diagnostics) {
-  const UrdfText source(text, name_for_messages);
-  const XacroRemnants remnants(source.robot());
-  report_missing(source, remnants.all(), diagnostics);
-  report_inert(source, remnants.all(), diagnostics);
+  const std::vector<XacroLeft> left = UrdfPlaces(text, name_for_messages).xacro_left();
+  report_missing(name_for_messages, left, diagnostics);
+  report_inert(left, diagnostics);
 }
 
 }  // namespace kinecal::detail

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/files/yaml/config_map.ipp"
+#include "kinecal/files/yaml/config_map.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {

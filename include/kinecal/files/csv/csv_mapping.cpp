@@ -5,18 +5,205 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "kinecal/files/csv/csv_observation.ipp"
-#include "kinecal/files/yaml/config_map.ipp"
+#include "kinecal/files/samples/feature_id_parameters.ipp"
+#include "kinecal/files/yaml/config_map.hpp"
 #include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/text/counted.hpp"
 
 namespace kinecal {
 
 namespace detail {
+
+// Reads one sensor of a mapping: columns of its points or pixels, frames, ids.
+
+/// A column, or a list of them.
+[[nodiscard]] inline CsvSum read_csv_sum(const ConfigMap& map, const YamlNode& node,
+                                         const SourceLocation& place) {
+  CsvSum sum;
+  const auto add = [&](const YamlNode& column) {
+    const auto name = config_text(column);
+    if (name) sum.push_back({*name, {place.file, column.line}});
+    if (!name) map.error(place, describe_config(column) + " is not a column");
+  };
+  if (node.is_list()) {
+    for (const YamlNode& column : node.items) add(column);
+    if (node.items.empty()) map.error(place, "a list of columns is empty");
+  } else {
+    add(node);
+  }
+  return sum;
+}
+
+/// The two units that a key of columns.yaml may have.
+struct CsvUnitNames {
+  const char *si, *other;
+  CsvUnit meaning;  ///< of the other
+};
+
+inline constexpr CsvUnitNames kAngles{"radians", "degrees", {true, false}};
+inline constexpr CsvUnitNames kLengths{"metres", "millimetres", {false, true}};
+inline constexpr CsvUnitNames kAngularSpeeds{"rad/s", "deg/s", {true, false}};
+inline constexpr CsvUnitNames kSpeeds{"m/s", "mm/s", {false, true}};
+
+[[nodiscard]] inline CsvUnit read_csv_unit(ConfigMap& map, const CsvUnitNames& names) {
+  const std::string unit = read_choice(map, "unit", names.si, {names.si, names.other});
+  return unit == names.other ? names.meaning : CsvUnit{};
+}
+
+/// Notes the unit that is taken if none is given: it decides the scale.
+inline void note_csv_unit(const ConfigMap& map, const CsvUnitNames& names) {
+  if (map.peek("unit") != nullptr) return;
+  map.note(map.place(), fmt::format("unit is not given: {}", names.si));
+}
+
+/// `points:` (three columns each) or `pixels:` (two)
+inline void read_csv_points(ConfigMap& map, const std::string& key, std::size_t columns,
+                            CsvObservation& observation) {
+  for (const ConfigEntry& entry : map.list(key)) {
+    if (!entry.value.is_list() || entry.value.items.size() != columns) {
+      map.error(entry.place,
+                key + ": " + describe_config(entry.value) + " is not a list of " +
+                    (columns == 3 ? "three columns, [x, y, z]" : "two columns, [u, v]"));
+      continue;
+    }
+    std::array<CsvSum, 3> point;
+    for (std::size_t i = 0; i < columns; ++i) {
+      point[i] = read_csv_sum(map, entry.value.items[i], entry.place);
+    }
+    observation.points.push_back(std::move(point));
+  }
+}
+
+/// `constant: [x, y, z]`, or a list of such points, in the observation's unit
+inline void read_csv_constant(ConfigMap& map, CsvObservation& observation) {
+  const ConfigEntry* entry = map.find("constant");
+  if (entry == nullptr) return;
+  const auto add = [&](const YamlNode& node) {
+    Vector3<double> point = Vector3<double>::Zero();
+    bool good = node.is_list() && node.items.size() == 3;
+    for (std::size_t i = 0; good && i < 3; ++i) {
+      const auto number = config_number(node.items[i]);
+      good = number && std::isfinite(*number);
+      if (good) point(static_cast<Eigen::Index>(i)) = *number;
+    }
+    if (!good) {
+      map.error(entry->place,
+                "constant is not a list of three numbers, [x, y, z], nor a list of such lists");
+    }
+    observation.constants.push_back(observation.unit.millimetres ? point / 1000.0 : point);
+  };
+  const YamlNode& value = entry->value;
+  if (value.is_list() && !value.items.empty() && value.items.front().is_list()) {
+    for (const YamlNode& point : value.items) add(point);
+  } else {
+    add(value);
+  }
+}
+
+/// `frame:` or `frame_column:`
+inline void read_csv_frame(ConfigMap& map, CsvObservation& observation) {
+  const ConfigEntry* column = map.find("frame_column");
+  if (column == nullptr) {
+    observation.frame = map.required_text("frame").value_or("");
+    return;
+  }
+  if (map.find("frame") != nullptr) {
+    map.error(column->place, "has frame and frame_column; give one of them");
+  }
+  observation.frame_column = read_csv_sum(map, column->value, column->place);
+  if (observation.frame_column.size() > 1) {
+    map.error(column->place, "frame_column is a list; one column names the frame");
+  }
+}
+
+/// `ids:` or `id_columns:`, one for each feature
+inline void read_csv_ids(ConfigMap& map, CsvObservation& observation) {
+  const std::size_t features = observation.points.size() + observation.constants.size();
+  const ConfigEntry *ids = map.find("ids"), *columns = map.find("id_columns");
+  if (ids != nullptr && columns != nullptr) {
+    map.error(columns->place, "has ids and id_columns; give one of them");
+  }
+  const auto check = [&](const ConfigEntry& entry, std::size_t count, const char* what) {
+    if (count == features) return;
+    map.error(entry.place, fmt::format("has {} {}, but {} features; give each of them one", count,
+                                       what, features));
+  };
+  if (columns != nullptr) {
+    observation.id_columns = read_csv_sum(map, columns->value, columns->place);
+    check(*columns, observation.id_columns.size(), "id_columns");
+  } else if (ids != nullptr) {
+    const std::vector<YamlNode> one = {ids->value};
+    for (const YamlNode& node : ids->value.is_list() ? ids->value.items : one) {
+      const auto number = config_number(node);
+      const auto id = number ? feature_id(*number) : std::nullopt;
+      if (!id)
+        map.error(ids->place, "ids: " + describe_config(node) + " is not a whole number from 0");
+      observation.ids.push_back(id.value_or(0));
+    }
+    check(*ids, observation.ids.size(), "ids");
+  }
+}
+
+/// `table:` and `match:`
+inline void read_csv_own_table(ConfigMap& map, CsvObservation& observation) {
+  const ConfigEntry *table = map.find("table"), *match = map.find("match");
+  if (match != nullptr) {
+    observation.match = read_csv_sum(map, match->value, match->place);
+    if (table == nullptr) map.error(match->place, "has match, but no table");
+    if (observation.match.size() > 1) map.error(match->place, "match is a list of columns");
+  }
+  if (table == nullptr) return;
+  const auto name = config_text(table->value);
+  if (!name) return map.error(table->place, describe_config(table->value) + " is not a file");
+  observation.table = (std::filesystem::path(table->place.file).parent_path() / *name).string();
+  if (!observation.constants.empty()) {
+    map.error(table->place, "has a table and a constant; give one of them");
+  }
+}
+
+/// Reports a sensor with points in one entry and pixels in another.
+inline void check_csv_kinds(const ConfigMap& map, const CsvMapping& mapping,
+                            const CsvObservation& observation) {
+  const auto in_pixels = [](const CsvObservation& o) {
+    return !o.points.empty() && o.points.front()[2].empty();
+  };
+  for (const CsvObservation& known : mapping.observations) {
+    if (known.sensor != observation.sensor || in_pixels(known) == in_pixels(observation)) continue;
+    map.error(map.place(), "has pixels here and points elsewhere; give the sensors two names");
+    return;
+  }
+}
+
+inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {
+  CsvObservation observation;
+  observation.sensor = map.required_text("sensor").value_or("");
+  if (!observation.sensor.empty()) map.set_subject("sensor '" + observation.sensor + "'");
+  read_csv_frame(map, observation);
+  const bool has_pixels = map.peek("pixels") != nullptr;
+  if (map.peek("points") != nullptr) note_csv_unit(map, kLengths);
+  if (!has_pixels) observation.unit = read_csv_unit(map, kLengths);
+  read_csv_constant(map, observation);
+  read_csv_points(map, "points", 3, observation);
+  read_csv_points(map, "pixels", 2, observation);
+  const int kinds = (has_pixels ? 1 : 0) + (map.peek("points") != nullptr ? 1 : 0) +
+                    (map.peek("constant") != nullptr ? 1 : 0);
+  if (kinds != 1) {
+    map.error(map.place(), "has " + std::string(kinds == 0 ? "none" : "more than one") +
+                               " of points, pixels and constant; give exactly one");
+  }
+  read_csv_ids(map, observation);
+  read_csv_own_table(map, observation);
+  check_csv_kinds(map, mapping, observation);
+  map.report_unknown();
+  mapping.observations.push_back(std::move(observation));
+}
+
 namespace {
 
 /// `joints:`, `sliding:` or the velocities of either

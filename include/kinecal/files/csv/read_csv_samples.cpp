@@ -7,18 +7,253 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
 #include <set>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "kinecal/files/csv/csv_samples.ipp"
+#include "kinecal/files/csv/csv_columns.hpp"
+#include "kinecal/files/csv/csv_table.hpp"
+#include "kinecal/files/samples/feature_id_parameters.ipp"
 #include "kinecal/files/text_file.hpp"
+#include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/samples/joint_moves.hpp"
+#include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
+
+// Converts the rows of a table to samples.
+
+/// Converts rows to samples.  After a few bad cells it only counts the rest.
+class CsvSamples {
+ public:
+  CsvSamples(const CsvMapping& mapping, CsvColumns columns, std::string file,
+             Diagnostics& diagnostics)
+      : mapping_(mapping),
+        columns_(std::move(columns)),
+        file_(std::move(file)),
+        diagnostics_(diagnostics) {
+    for (const CsvJoint& joint : mapping.joints) joints_.push_back(find(joint.columns));
+    for (const CsvPose& pose : mapping.poses) poses_.push_back(find(pose.columns));
+    for (const CsvJoint& joint : mapping.velocities) velocities_.push_back(find(joint.columns));
+    for (const CsvCondition& condition : mapping.conditions) {
+      conditions_.push_back(find(condition.columns));
+    }
+    for (const CsvObservation& observation : mapping.observations) {
+      if (!observation.table.empty()) continue;
+      observations_.push_back(&observation);
+      frames_.push_back(find(observation.frame_column));
+      ids_.push_back(find(observation.id_columns));
+      for (const auto& point : observation.points) {
+        for (const CsvSum& sum : point) points_.push_back(find(sum));
+      }
+    }
+  }
+
+  /// The sample of a row; a warning and nullopt if a joint's position or pose is missing.
+  [[nodiscard]] std::optional<Sample> sample(const CsvRow& row) {
+    Sample sample;
+    sample.source = SourceLocation{file_, row.line}.str();
+    bool complete = true;
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      const CsvJoint& joint = mapping_.joints[i];
+      const double q = value(row, joints_[i], joint.unit);
+      if (std::isnan(q) && complete) {
+        diagnostics_.warning(
+            {file_, row.line},
+            fmt::format("joint '{}' has no position; the row is left out", joint.name));
+      }
+      complete = complete && !std::isnan(q);
+      if (!joint.unit.degrees && !joint.unit.millimetres) {
+        doubt(row, "joint '" + joint.name + "'", q, 4.0 * std::numbers::pi, "radians or metres");
+      }
+      sample.joint_names.push_back(joint.name);
+      sample.joint_positions.push_back(q);
+    }
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      complete = add_pose(row, mapping_.poses[i], poses_[i], sample) && complete;
+    }
+    if (complete) add_velocities(row, sample);
+    for (std::size_t i = 0; i < conditions_.size(); ++i) {
+      sample.conditions[mapping_.conditions[i].name] = value(row, conditions_[i], {});
+    }
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < observations_.size(); ++i) {
+      add_features(row, *observations_[i], frames_[i], ids_[i], next, sample);
+    }
+    if (!complete) return std::nullopt;
+    return sample;
+  }
+
+  /// Reports the number of bad cells that were only counted.
+  void finish() {
+    if (bad_cells_ <= kReported) return;
+    const std::size_t more = bad_cells_ - kReported;
+    diagnostics_.error({file_, 0}, fmt::format("{} more cell{} like these cannot be read", more,
+                                               more == 1 ? "" : "s"));
+  }
+
+ private:
+  static constexpr std::size_t kReported = 20;  ///< bad cells, one by one
+  using Indices = std::vector<std::pair<std::size_t, const CsvColumn*>>;
+
+  /// Adds the measured pose of a floating joint.
+  /// @returns  false, after a warning, if numbers of it are missing
+  [[nodiscard]] bool add_pose(const CsvRow& row, const CsvPose& of, const Indices& columns,
+                              Sample& sample) {
+    std::vector<double> numbers;
+    for (const auto& column : columns) numbers.push_back(value(row, {column}, {}));
+    const auto is_missing = [](double number) { return std::isnan(number); };
+    if (std::any_of(numbers.begin(), numbers.end(), is_missing)) {
+      diagnostics_.warning({file_, row.line},
+                           fmt::format("joint '{}' has no pose; the row is left out", of.joint));
+      return false;
+    }
+    const std::size_t before = bad_cells_;
+    const NumberedPose read = pose_from_numbers(of.form, numbers);
+    if (!read.wrong.empty()) {
+      bad_row(row, fmt::format("pose of '{}': {}", of.joint, read.wrong));
+    }
+    sample.poses[of.joint] = read.pose;
+    return bad_cells_ == before;
+  }
+
+  /// A missing velocity is an error: NaN would silently reach the models that use it.
+  void add_velocities(const CsvRow& row, Sample& sample) {
+    for (std::size_t i = 0; i < velocities_.size(); ++i) {
+      const CsvJoint& joint = mapping_.velocities[i];
+      const double v = value(row, velocities_[i], joint.unit);
+      if (std::isnan(v)) {
+        bad_cell(row, joint.columns.front(),
+                 fmt::format("has no velocity of joint '{}'; every row needs one", joint.name));
+      }
+      if (!joint.unit.degrees && !joint.unit.millimetres) {
+        doubt(row, "the velocity of joint '" + joint.name + "'", v, 4.0 * std::numbers::pi,
+              "rad/s or m/s");
+      }
+      sample.joint_velocities.push_back(v);
+    }
+  }
+
+  /// Adds the features of one entry to the observation of its sensor.
+  /// @param next  index in points_ of its first number; advanced past its last one
+  void add_features(const CsvRow& row, const CsvObservation& observation, const Indices& column,
+                    const Indices& ids, std::size_t& next, Sample& sample) {
+    const std::string frame = column.empty() ? observation.frame : text(row, column.front());
+    auto seen = std::find_if(sample.observations.begin(), sample.observations.end(),
+                             [&](const Observation& o) { return o.sensor == observation.sensor; });
+    if (seen == sample.observations.end()) {
+      seen = sample.observations.insert(seen, Observation{observation.sensor, {}});
+    }
+    const std::size_t before = seen->features.size();
+    for (const auto& point : observation.constants) seen->features.push_back({frame, point});
+    for (const auto& point : observation.points) {
+      Vector3<double> p;
+      for (Eigen::Index k = 0; k < 3; ++k) p(k) = value(row, points_[next++], observation.unit);
+      if (!observation.unit.millimetres && !point[2].empty()) {
+        doubt(row, "sensor '" + observation.sensor + "'", p.cwiseAbs().maxCoeff(), 100.0, "metres");
+      }
+      seen->features.push_back({frame, p});
+    }
+    add_ids(row, observation.ids, ids, before, seen->features);
+  }
+
+  /// Sets the ids of the features from `first` on.  A feature with neither point nor id was not
+  /// seen.
+  void add_ids(const CsvRow& row, const std::vector<int>& ids, const Indices& columns,
+               std::size_t first, std::vector<Feature>& features) {
+    for (std::size_t i = 0; i < ids.size(); ++i) features[first + i].id = ids[i];
+    std::size_t at = first;
+    for (const auto& column : columns) {
+      const double number = value(row, {column}, {});
+      if (std::isnan(number) && !features[at].point.allFinite()) {
+        features.erase(features.begin() + static_cast<std::ptrdiff_t>(at));
+        continue;
+      }
+      features[at].id = feature_id(number);
+      if (!features[at++].id) {
+        bad_cell(row, *column.second, "has no id; an id is a whole number from 0");
+      }
+    }
+  }
+
+  /// The name in a cell; empty for a bad cell, which is reported.
+  [[nodiscard]] std::string text(const CsvRow& row, const Indices::value_type& column) {
+    const bool exists = column.first < row.cells.size();
+    std::string name = exists ? row.cells[column.first] : "";
+    if (name.empty()) bad_cell(row, *column.second, "is empty; it names the frame of the row");
+    return name;
+  }
+
+  Indices find(const CsvSum& sum) {
+    Indices indices;
+    for (const CsvColumn& column : sum) {
+      if (const auto index = columns_.find(column)) indices.emplace_back(*index, &column);
+    }
+    return indices;
+  }
+
+  /// Warns once of a number so large that its unit is probably wrong.
+  void doubt(const CsvRow& row, const std::string& what, double number, double most,
+             const char* unit) {
+    if (!(std::abs(number) > most) || !doubted_.insert(what).second) return;
+    diagnostics_.warning({file_, row.line}, fmt::format("{} is at {} {}; is a unit missing in the "
+                                                        "columns' file?",
+                                                        what, number, unit));
+  }
+
+  void bad_cell(const CsvRow& row, const CsvColumn& column, const std::string& what) {
+    bad_row(row, fmt::format("column '{}' {}", column.name, what));
+  }
+  void bad_row(const CsvRow& row, const std::string& what) {
+    if (++bad_cells_ <= kReported) diagnostics_.error({file_, row.line}, what);
+  }
+
+  /// Radians, metres or pixels; zero without columns, and for a bad cell, which is reported.
+  [[nodiscard]] double value(const CsvRow& row, const Indices& columns, const CsvUnit& unit) {
+    double sum = 0.0;
+    for (const auto& [index, column] : columns) {
+      if (index >= row.cells.size()) {
+        bad_cell(row, *column,
+                 fmt::format("is missing: the row has {} cell{}", row.cells.size(),
+                             row.cells.size() == 1 ? "" : "s"));
+        continue;
+      }
+      const std::string& cell = row.cells[index];
+      const std::optional<double> number = csv_number(cell);
+      if (!number || std::isinf(*number)) {
+        const bool comma = cell.find(',') != std::string::npos;
+        bad_cell(row, *column,
+                 fmt::format("is '{}', which is not a {}number{}", cell, number ? "finite " : "",
+                             comma ? "; write a decimal point, not a comma" : ""));
+        continue;
+      }
+      // Moving the decimal point of a single length avoids a second rounding.
+      if (unit.millimetres && columns.size() == 1 && std::isfinite(*number)) {
+        return metres_from_millimetres(cell).value_or(0.0);
+      }
+      sum += *number;
+    }
+    if (unit.degrees) return sum * (std::numbers::pi / 180.0);
+    return unit.millimetres ? sum / 1000.0 : sum;
+  }
+
+  const CsvMapping& mapping_;
+  std::vector<const CsvObservation*> observations_;  ///< those in this table
+  CsvColumns columns_;
+  std::string file_;
+  Diagnostics& diagnostics_;
+  /// In the order of the mapping.
+  std::vector<Indices> joints_, poses_, velocities_, conditions_, frames_, ids_, points_;
+  std::size_t bad_cells_ = 0;
+  std::set<std::string> doubted_;  ///< joints and sensors with a warning
+};
 
 /// Warns of a header with only numbers, unless it counts the columns.
 void doubt_csv_header(const CsvRow& row, const std::string& file, Diagnostics& diagnostics) {

@@ -16,7 +16,7 @@
 
 #include "kinecal/files/poses/hand_eye_samples.hpp"
 #include "kinecal/files/text_file.hpp"
-#include "kinecal/files/yaml/config_map.ipp"
+#include "kinecal/files/yaml/config_map.hpp"
 #include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 

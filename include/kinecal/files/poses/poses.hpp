@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/capture/capture_pose.hpp"
+#include "kinecal/capture/session/capture_pose.hpp"
 #include "kinecal/files/diagnostics.hpp"
 
 namespace kinecal {

@@ -20,7 +20,7 @@
 #include "kinecal/files/bags/ros1/write_bag.hpp"
 #include "kinecal/files/messages/encode.hpp"
 #include "kinecal/files/messages/known_definitions.hpp"
-#include "kinecal/files/results/staging.ipp"
+#include "kinecal/files/results/staging.hpp"
 
 namespace kinecal {
 namespace detail {

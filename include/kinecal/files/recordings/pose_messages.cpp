@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/files/messages/make.ipp"
+#include "kinecal/files/messages/make.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/message_decoder.ipp"
 #include "kinecal/files/recordings/read_bag.hpp"

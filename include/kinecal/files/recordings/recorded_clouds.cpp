@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "kinecal/files/messages/message_fields.ipp"
+#include "kinecal/files/messages/message_fields.hpp"
 #include "kinecal/files/messages/view_message.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/message_decoder.ipp"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "kinecal/files/messages/make.ipp"
+#include "kinecal/files/messages/make.hpp"
 #include "kinecal/files/results/output_file.hpp"
 #include "kinecal/files/samples/feature_id_parameters.ipp"
 #include "kinecal/files/yaml/yaml_text.hpp"

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/files/results/staging.ipp"
+#include "kinecal/files/results/staging.hpp"
 #include "kinecal/files/results/standard_output.hpp"
 
 namespace kinecal {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "kinecal/files/cameras/camera_info.hpp"
-#include "kinecal/files/cameras/image_part.ipp"
+#include "kinecal/files/cameras/image_part.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/samples/feature_id_parameters.ipp"
 #include "kinecal/files/samples/sample_schema.ipp"

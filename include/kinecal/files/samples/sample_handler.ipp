@@ -7,19 +7,282 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "kinecal/files/samples/misspelt_keys.ipp"
-#include "kinecal/files/samples/sample_builder.ipp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/poses/pose_numbers.hpp"
+#include "kinecal/files/samples/sample_camera.ipp"
 #include "kinecal/files/samples/sample_schema.ipp"
+#include "kinecal/files/yaml/deciding_keys.hpp"
 #include "kinecal/files/yaml/yaml_events.ipp"
+#include "kinecal/files/yaml/yaml_text.hpp"
+#include "kinecal/samples/sample.hpp"
+#include "kinecal/text/counted.hpp"
+#include "kinecal/text/frame_name.hpp"
+#include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal::detail {
+
+// The measured pose of a floating joint in a sample.
+
+/// Collects the numbers of a pose.
+class SamplePose {
+ public:
+  /// @param node  pose_xyz_item or pose_quaternion_item
+  void number(SampleNode node, double value) {
+    (node == SampleNode::pose_xyz_item ? xyz_ : xyzw_).push_back(value);
+  }
+
+  /// The pose of the numbers.
+  /// @returns  what is wrong with them; empty: nothing
+  [[nodiscard]] std::string read(Pose<double>& pose) const {
+    if (xyz_.size() != 3) return "xyz has " + counted(xyz_.size(), "number") + ", not 3";
+    if (xyzw_.size() != 4) {
+      return "quaternion_xyzw has " + counted(xyzw_.size(), "number") + ", not 4";
+    }
+    pose.translation = Vector3<double>::Map(xyz_.data());
+    const Eigen::Vector4d quaternion = Eigen::Vector4d::Map(xyzw_.data());
+    const auto rotation = rotation_from_rounded_quaternion(quaternion);
+    if (!rotation) return not_unit_text(quaternion.norm());
+    pose.rotation = *rotation;
+    const std::string far = far_away_text(pose.translation);
+    return far.empty() ? "" : far + "; write metres";
+  }
+
+ private:
+  std::vector<double> xyz_, xyzw_;
+};
+
+// Builds one sample from the values of its document or message, and collects errors.
+//
+// The nodes are those of sample_schema.ipp; sample_handler.ipp finds them.
+
+class SampleBuilder {
+ public:
+  /// @param file  name of the file in Sample::source
+  explicit SampleBuilder(std::string file) : file_(std::move(file)) {}
+
+  [[nodiscard]] Sample take() { return std::move(sample_); }
+  [[nodiscard]] SampleErrors& errors() { return errors_; }
+  [[nodiscard]] int sample_line() const { return line_; }  ///< where the last sample begins
+
+  /// A map or list begins.  @param line  of its first character, from 1
+  void begin(SampleNode node, int line) {
+    if (node == SampleNode::sample) {
+      line_ = line;
+      sample_ = {};
+      sample_.joint_names.reserve(joints_);
+      sample_.joint_positions.reserve(joints_);
+      sample_.source = SourceLocation{file_, line}.str();
+    } else if (node == SampleNode::observation) {
+      sample_.observations.emplace_back();
+      camera_ = {};
+    } else if (node == SampleNode::feature) {
+      observation().features.emplace_back();
+    } else if (node == SampleNode::pose) {
+      pose_ = {};
+    } else {
+      camera_.begin(node, line);
+    }
+  }
+
+  /// A map or list ends.  @param line  where it began
+  void end(SampleNode node, int line) {
+    if (node == SampleNode::joint_states) check_joints(line);
+    if (node == SampleNode::orientation) end_orientation(line);
+    if (node == SampleNode::pose) end_pose(line);
+    if (node == SampleNode::observation) end_observation(line);
+    if (node == SampleNode::parameter) camera_.end_parameter(errors_);
+  }
+
+  /// The name of the condition, or of the joint of a pose, whose value comes next.
+  void key(SampleNode node, int line, std::string_view name) {
+    key_ = name;
+    const bool is_pose = node == SampleNode::pose;
+    if (!(is_pose ? sample_.poses.contains(key_) : sample_.conditions.contains(key_))) return;
+    errors_.add(line, fmt::format("{}: {} occurs twice", sample_name(node), shown(name)));
+  }
+
+  /// A word, or a number as text.
+  void scalar(SampleNode node, int line, std::string_view text) {
+    if (sample_rule(node).kind == SampleNodeKind::word) return word(node, line, text);
+    const std::optional<double> value = number_from_yaml(text);
+    if (!value) {
+      errors_.add(line, fmt::format("{}: {} is not a number", sample_name(node), shown(text)));
+    }
+    number(node, line, value.value_or(0.0));
+  }
+
+  /// @param node  of kind SampleNodeKind::number
+  void number(SampleNode node, int line, double value) {
+    if (node == SampleNode::joint_position) {
+      sample_.joint_positions.push_back(value);
+    } else if (node == SampleNode::joint_velocity) {
+      sample_.joint_velocities.push_back(value);
+    } else if (node == SampleNode::x) {
+      feature().point.x() = value;
+    } else if (node == SampleNode::y) {
+      feature().point.y() = value;
+    } else if (node == SampleNode::z) {
+      feature().point.z() = value;
+    } else if (node >= SampleNode::qx && node <= SampleNode::qw) {
+      quaternion_(static_cast<int>(node) - static_cast<int>(SampleNode::qx)) = value;
+    } else if (node == SampleNode::seconds || node == SampleNode::nanoseconds) {
+      add_to_stamp(node == SampleNode::seconds ? 1e9 : 1.0, value);
+    } else if (node == SampleNode::pose_xyz_item || node == SampleNode::pose_quaternion_item) {
+      pose_.number(node, value);
+    } else if (node == SampleNode::condition) {
+      sample_.conditions[key_] = value;
+    } else if (node == SampleNode::sigma) {
+      feature().sigma = value;
+    } else if (node == SampleNode::id) {
+      feature().id = feature_id(value);
+      if (!feature().id)
+        errors_.add(line, fmt::format("id: {} is not a whole number from 0", value));
+    } else {
+      camera_.number(node, line, value, errors_);
+    }
+  }
+
+ private:
+  [[nodiscard]] Observation& observation() { return sample_.observations.back(); }
+  [[nodiscard]] Feature& feature() { return observation().features.back(); }
+
+  void word(SampleNode node, int line, std::string_view text) {
+    if (node == SampleNode::joint_name) {
+      sample_.joint_names.emplace_back(text);
+    } else if (node == SampleNode::sensor) {
+      observation().sensor = text;
+    } else if (node == SampleNode::frame) {
+      feature().frame = plain_frame(text);  // tf of old ROS 1: /tool
+    } else {
+      camera_.word(node, line, text);
+    }
+  }
+
+  /// Ignores zero, which stands for an unknown time.
+  void add_to_stamp(double unit, double value) {
+    constexpr double kMost = 9e18;  // nanoseconds
+    const double nanoseconds = unit * value;
+    if (nanoseconds == 0.0 || !(std::abs(nanoseconds) < kMost)) return;
+    sample_.stamp = sample_.stamp.value_or(std::chrono::nanoseconds(0)) +
+                    std::chrono::nanoseconds(std::llround(value) * std::llround(unit));
+  }
+
+  void check_joints(int line) {
+    const std::size_t names = sample_.joint_names.size(), values = sample_.joint_positions.size();
+    joints_ = names;
+    if (names != values) {
+      errors_.add(line, fmt::format("joint_states: {} name{} but {} position{}", names,
+                                    names == 1 ? "" : "s", values, values == 1 ? "" : "s"));
+    }
+    std::vector<double>& velocities = sample_.joint_velocities;
+    if (!velocities.empty() && velocities.size() != names) {
+      errors_.warn_once(
+          line, fmt::format("joint_states: {} names but {} velocit{}, so velocities "
+                            "are not used",
+                            names, velocities.size(), velocities.size() == 1 ? "y" : "ies"));
+      velocities.clear();
+    }
+  }
+
+  void end_orientation(int line) {
+    const auto rotation = rotation_from_rounded_quaternion(quaternion_);
+    if (!rotation) errors_.add(line, "orientation: " + not_unit_text(quaternion_.norm()));
+    feature().rotation = rotation.value_or(Matrix3<double>::Identity());
+  }
+
+  void end_pose(int line) {
+    const std::string wrong = pose_.read(sample_.poses[key_]);
+    if (!wrong.empty()) errors_.add(line, fmt::format("pose of {}: {}", shown(key_), wrong));
+  }
+
+  void end_observation(int line) {
+    const std::string& name = observation().sensor;
+    const auto where = [&] {
+      return fmt::format("sample at line {}, sensor {}", line_, shown(name));
+    };
+    const auto same = [&](const Observation& o) { return o.sensor == name; };
+    if (std::any_of(sample_.observations.begin(), sample_.observations.end() - 1, same)) {
+      errors_.add(line, where() + " occurs twice");
+    }
+    if (const std::string wrong = camera_.ids().apply(observation().features); !wrong.empty()) {
+      errors_.add(line, where() + ": " + wrong);
+    }
+    observation().camera = camera_.take(line, where, errors_);
+    if (!observation().camera) return;
+    const std::string doubt = doubt_image_part(camera_.part(), *observation().camera);
+    if (!doubt.empty()) errors_.warn_once(line, fmt::format("sensor {}: {}", shown(name), doubt));
+  }
+
+  std::string file_;
+  SampleErrors errors_;
+  int line_ = 0;            ///< where the sample begins
+  std::size_t joints_ = 0;  ///< of the last sample: the next one probably has as many
+  Sample sample_;
+  Eigen::Vector4d quaternion_ = Eigen::Vector4d::Zero();  ///< x y z w
+  std::string key_;  ///< name of the last condition, or joint of the last pose
+  SamplePose pose_;
+  SampleCamera camera_;
+};
+
+// Finds probable mistakes in the keys of samples.
+//
+// Only kinecal has some of the keys: a typo would silently ignore a sigma, an id,
+// the conditions or the poses.
+// And {x: 0,03} is the number 0 and a key 03.
+
+/// The probably intended key; empty if none is within two letters.
+/// @param parent  the map with the key
+[[nodiscard]] inline std::string_view meant_sample_key(SampleNode parent, std::string_view key) {
+  constexpr std::size_t kMostLetters = 2;
+  for (const SampleNode own : {SampleNode::poses, SampleNode::conditions, SampleNode::orientation,
+                               SampleNode::sigma, SampleNode::id}) {
+    const SampleNodeRule& rule = sample_rule(own);
+    if (rule.parent != parent) continue;
+    const NearestName near = NearestName::none(key).or_nearer(rule.key, key);
+    if (!near.name.empty() && near.distance <= kMostLetters) return rule.key;
+  }
+  return {};
+}
+
+/// Warns of an unknown key that resembles one of kinecal's own, once per file.  A key of digits
+/// among numbers is an error.
+inline void doubt_sample_key(SampleErrors& errors, SampleNode parent, int line,
+                             std::string_view key) {
+  const bool digits = key.find_first_not_of("0123456789") == std::string_view::npos;
+  if (digits && !key.empty() &&
+      (parent == SampleNode::point || parent == SampleNode::orientation)) {
+    const std::string_view part = key.substr(0, 20);
+    return errors.add(line, fmt::format("{}: unknown key '{}'; decimal comma? write a dot: 0.{}",
+                                        sample_name(parent), part, part));
+  }
+  const KeyMeaning meaning = meaning_of_key(key);
+  const bool is_lens = parent == SampleNode::camera_info && meaning == KeyMeaning::distortion;
+  const bool is_unit = meaning == KeyMeaning::unit &&
+                       (parent == SampleNode::feature || parent == SampleNode::point ||
+                        parent == SampleNode::observation || parent == SampleNode::joint_states);
+  if (is_lens || is_unit) {
+    return errors.add(line, fmt::format("{}: unknown key {} looks like {}, which would be lost; {}",
+                                        sample_name(parent), shown(key), text_of(meaning),
+                                        is_lens ? "the distortion is called D (ROS 2: d)"
+                                                : "samples are in metres, radians and pixels"));
+  }
+  const std::string_view meant = meant_sample_key(parent, key);
+  if (meant.empty()) return;
+  errors.warn_once(line, fmt::format("{}: unknown key {} is skipped; did you mean '{}'?",
+                                     sample_name(parent), shown(key), meant));
+}
 
 class SampleHandler {
  public:

@@ -5,22 +5,147 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <deque>
 #include <map>
+#include <pugixml.hpp>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "kinecal/files/urdf/changed_numbers.ipp"
 #include "kinecal/files/urdf/joint_editor.ipp"
 #include "kinecal/files/urdf/patch_urdf.hpp"
 #include "kinecal/files/urdf/urdf_text.ipp"
-#include "kinecal/files/urdf/xacro_matches.ipp"
+#include "kinecal/files/urdf/xacro_files.hpp"
+#include "kinecal/files/urdf/xacro_joints.ipp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
+
+// The numbers of a joint that a calibration has changed in a URDF.
+
+/// A list of numbers in a joint: an attribute of one of its elements.
+struct JointNumbers {
+  const char *element, *attribute;
+  std::size_t size;
+};
+
+constexpr std::array<JointNumbers, 10> kPatchedNumbers = {
+    {{"origin", "xyz", 3},
+     {"origin", "rpy", 3},
+     {"limit", "lower", 1},
+     {"limit", "upper", 1},
+     {"safety_controller", "soft_lower_limit", 1},
+     {"safety_controller", "soft_upper_limit", 1},
+     {"calibration", "rising", 1},
+     {"calibration", "falling", 1},
+     {"mimic", "multiplier", 1},
+     {"mimic", "offset", 1}}};
+
+/// The values that a joint has after the calibration, and had before, where they differ.
+struct ChangedNumbers {
+  JointNumbers of;
+  std::vector<double> before, after;
+
+  /// `xyz="0.1 0 0" of <origin>`
+  [[nodiscard]] std::string text() const {
+    std::string all;
+    for (const double value : after) all += (all.empty() ? "" : " ") + xml_number(value);
+    return fmt::format("{}=\"{}\" of <{}>", of.attribute, all, of.element);
+  }
+};
+
+[[nodiscard]] std::vector<ChangedNumbers> changed_numbers(const UrdfText& original,
+                                                          const UrdfText& calibrated,
+                                                          const std::string& joint) {
+  std::vector<ChangedNumbers> changes;
+  Diagnostics ignored;  // the reader of URDFs has reported them
+  for (const JointNumbers& of : kPatchedNumbers) {
+    const auto numbers = [&](const UrdfText& source) {
+      return source.numbers(source.joint(joint).child(of.element), of.attribute, of.size, ignored);
+    };
+    ChangedNumbers change{of, numbers(original), numbers(calibrated)};
+    if (change.before != change.after) changes.push_back(std::move(change));
+  }
+  return changes;
+}
+
+[[nodiscard]] bool same_numbers(const std::vector<double>& a, const std::vector<double>& b) {
+  constexpr double kSame = 1e-9;  // of numbers that xacro has rounded
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
+    return std::abs(x - y) <= kSame * (1.0 + std::abs(y));
+  });
+}
+
+// Which element of which xacro file makes a joint of the URDF.
+
+/// A xacro file with its edits.
+struct XacroSource {
+  explicit XacroSource(const XacroFile& file) : source(file.text, file.name) {}
+  UrdfText source;
+  std::vector<TextEdit> edits = {};
+};
+
+/// An element that makes joints, and its file.
+struct XacroElement {
+  pugi::xml_node joint;
+  std::size_t file = 0;
+};
+
+/// The joints of xacro files, and those of the URDF that each of them makes.
+class XacroMatches {
+ public:
+  XacroMatches(const std::deque<XacroSource>& files, const UrdfText& urdf) : files_(files) {
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      for (const pugi::xml_node joint : xacro_joints(files[i].source.robot())) {
+        joints_.push_back(joint);
+        file_of_[joint] = i;
+      }
+    }
+    for (const pugi::xml_node joint : urdf.robot().children("joint")) {
+      const auto found = joints_named(joints_, joint.attribute("name").value());
+      if (found.size() == 1) ++made_[found.front()];
+    }
+  }
+
+  /// The element that makes only this joint; else a null node.
+  /// @param why  receives the reason
+  [[nodiscard]] XacroElement only_for(const std::string& name, std::string& why) const {
+    const auto found = joints_named(joints_, name);
+    if (found.empty()) {
+      why = fmt::format("{}: no joint '{}'{}", files_.front().source.file(), name,
+                        files_.size() == 1 ? "" : ", nor in the files that it includes");
+      return {};
+    }
+    if (found.size() > 1) {
+      std::string places;
+      for (const pugi::xml_node joint : found) {
+        places += (places.empty() ? "" : ", ") + place_of(joint);
+      }
+      why = fmt::format("{}: several joints that may be '{}'", places, name);
+      return {};
+    }
+    const int made = made_.at(found.front());
+    if (made == 1) return {found.front(), file_of_.at(found.front())};
+    why = fmt::format("{}: joint '{}' is one of {} that this element makes",
+                      place_of(found.front()), name, made);
+    return {};
+  }
+
+ private:
+  [[nodiscard]] std::string place_of(pugi::xml_node joint) const {
+    return files_[file_of_.at(joint)].source.place(joint).str();
+  }
+
+  const std::deque<XacroSource>& files_;
+  std::vector<pugi::xml_node> joints_;
+  std::map<pugi::xml_node, std::size_t> file_of_;
+  std::map<pugi::xml_node, int> made_;  ///< joints of the URDF
+};
 
 /// Patches one joint of a xacro file.
 struct XacroJoint {

@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "kinecal/report/charts/chart.hpp"
 #include "kinecal/report/charts/distance_axis.hpp"
-#include "kinecal/report/charts/sample_marks.ipp"
 #include "kinecal/report/svg.hpp"
 #include "kinecal/report/svg_legend.hpp"
 #include "kinecal/report/svg_text.hpp"
@@ -18,6 +21,115 @@ namespace kinecal {
 
 namespace detail {
 namespace {
+
+// The marks of samples in the chart of their residuals.
+
+/// The drawn mark of a sample's worst feature.
+struct WorstMark {
+  std::size_t feature = 0;  ///< index into the block's
+  double distance = 0.0;
+};
+
+/// Paths of dots, one for each sample, by its number.
+using Dots = std::map<int, std::string>;
+
+/// The marks of a block's samples; each list of dots is one group of the svg.
+struct SampleMarks {
+  Dots others, worst, bad, left_out;
+  std::map<int, WorstMark> worst_of;  ///< by number
+};
+
+[[nodiscard]] SampleMarks sample_marks(const ReportData& data, const ReportedBlock& block,
+                                       const std::vector<double>& distances,
+                                       const std::vector<std::size_t>& chosen, const Axis& x,
+                                       const Axis& y) {
+  SampleMarks marks;
+  for (const std::size_t i : chosen) {
+    const int number = sample_number(data, block.features[i]);
+    WorstMark& worst = marks.worst_of.try_emplace(number, WorstMark{i, distances[i]}).first->second;
+    if (distances[i] > worst.distance) worst = {i, distances[i]};
+  }
+  constexpr std::size_t kFew = 400;  // with more samples, most dots would be dark
+  const double dark =
+      marks.worst_of.size() <= kFew ? 0.0 : quantile(sorted_finite(distances), 0.998);
+  for (const std::size_t i : chosen) {
+    const int number = sample_number(data, block.features[i]);
+    const ReportedSample& sample = sample_of(data, block.features[i]);
+    const bool is_worst = marks.worst_of[number].feature == i;
+    Dots& dots = sample.left_out       ? marks.left_out
+                 : !is_worst           ? marks.others
+                 : sample.bad          ? marks.bad
+                 : distances[i] < dark ? marks.others
+                                       : marks.worst;
+    const Place place = {x.at(number), y.at(distances[i])};
+    sample.left_out ? append_cross(dots[number], place) : append_dot(dots[number], place);
+  }
+  return marks;
+}
+
+void draw_dots(Drawing& drawing, const ReportData& data, const ReportedBlock& block,
+               const SampleMarks& marks, const Dots& dots, const char* classes) {
+  if (dots.empty()) return;
+  drawing.open_group(classes);
+  for (const auto& [number, path] : dots) {
+    const std::size_t worst = marks.worst_of.at(number).feature;
+    const bool titled = &dots != &marks.others;  // otherwise the worst one has the title
+    drawing.path(path, "", number,
+                 titled ? feature_text(data, block, block.features[worst]) : std::string());
+  }
+  drawing.close_group();
+}
+
+/// Numbers beside the three worst samples, unless one would cover another.
+void number_worst(Drawing& drawing, const SampleMarks& marks, const Axis& x, const Axis& y) {
+  std::vector<std::pair<int, WorstMark>> order(marks.worst_of.begin(), marks.worst_of.end());
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
+    return a.second.distance > b.second.distance;
+  });
+  order.resize(std::min<std::size_t>(order.size(), 3));
+  std::vector<Place> taken;
+  for (const auto& [number, worst] : order) {
+    const Place place = {x.at(number), y.at(worst.distance)};
+    constexpr double kWide = 40.0, kHigh = 13.0;
+    if (std::none_of(taken.begin(), taken.end(), [&](const Place& other) {
+          return std::abs(other[0] - place[0]) < kWide && std::abs(other[1] - place[1]) < kHigh;
+        })) {
+      const bool at_right = place[0] > x.to() - kWide;
+      drawing.text({place[0] + (at_right ? -7.0 : 7.0), place[1] + 4.0}, std::to_string(number),
+                   "small", at_right ? Anchor::end : Anchor::start);
+    }
+    taken.push_back(place);
+  }
+}
+
+/// Crosses of samples that were left out; at the top if they have no feature in the block.
+void draw_left_out(Drawing& drawing, const ReportData& data, const ReportedBlock& block,
+                   const SampleMarks& marks, const Axis& x, const Axis& y, double top) {
+  Dots crosses = marks.left_out;
+  std::map<int, std::pair<Place, std::string>> targets;
+  for (const ReportedSample& sample : data.samples) {
+    const int number = sample.number;
+    if (!sample.left_out || number <= 0 || targets.size() >= kMostMarks) continue;
+    const auto worst = marks.worst_of.find(number);
+    if (worst == marks.worst_of.end()) {
+      const Place place = {x.at(number), top + 6.5};
+      targets[number] = {place, fmt::format("sample {}: left out", number)};
+      append_cross(crosses[number], place);
+    } else {
+      targets[number] = {
+          {x.at(number), y.at(worst->second.distance)},
+          feature_text(data, block, block.features[worst->second.feature]) + ", left out"};
+    }
+  }
+  if (crosses.empty()) return;
+  drawing.open_group("out");
+  for (const auto& [number, path] : crosses) drawing.path(path, "", number);
+  constexpr double kTarget = 8.0;  // a cross is hard to hit
+  for (const auto& [number, target] : targets) {
+    drawing.circle(target.first, kTarget, "target", number, target.second);
+  }
+  drawing.close_group();
+}
 
 [[nodiscard]] std::string samples_description(const ReportData& data, const ReportedBlock& block,
                                               const std::vector<double>& distances,

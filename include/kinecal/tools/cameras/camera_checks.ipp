@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "kinecal/config/config.hpp"
-#include "kinecal/config/doubts/unseen_corners.ipp"
-#include "kinecal/config/missing_sensors.ipp"
+#include "kinecal/config/doubts/unseen_corners.hpp"
+#include "kinecal/config/missing_sensors.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/sensors/lens.hpp"

@@ -9,8 +9,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "kinecal/capture/homography.hpp"
-#include "kinecal/capture/target_pose.hpp"
+#include "kinecal/capture/boards/homography.hpp"
+#include "kinecal/capture/boards/target_pose.hpp"
 #include "kinecal/geometry/median.hpp"
 
 namespace kinecal {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <map>
 
-#include "kinecal/capture/homography.hpp"
+#include "kinecal/capture/boards/homography.hpp"
 #include "kinecal/text/image_region.hpp"
 #include "kinecal/tools/cameras/target_view.ipp"
 

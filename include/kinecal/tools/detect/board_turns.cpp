@@ -6,7 +6,7 @@
 
 #include <variant>
 
-#include "kinecal/capture/board_flips.hpp"
+#include "kinecal/capture/finders/board_flips.hpp"
 #include "kinecal/text/counted.hpp"
 
 namespace kinecal {

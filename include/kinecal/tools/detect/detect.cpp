@@ -9,8 +9,8 @@
 #include <utility>
 #include <variant>
 
-#include "kinecal/capture/session.hpp"
-#include "kinecal/capture/view_checks.hpp"
+#include "kinecal/capture/finders/view_checks.hpp"
+#include "kinecal/capture/session/session.hpp"
 
 namespace kinecal {
 namespace detail {

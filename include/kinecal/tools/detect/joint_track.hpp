@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/capture/settling.hpp"
+#include "kinecal/capture/session/settling.hpp"
 #include "kinecal/capture/view.hpp"
 
 namespace kinecal {

@@ -3,16 +3,114 @@
 #include "kinecal/tools/detect/joint_tracks.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "kinecal/tools/detect/joint_checks.ipp"
-#include "kinecal/tools/detect/joint_choice.ipp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/printable.hpp"
 #include "kinecal/tools/detect/joint_motion.hpp"
+#include "kinecal/tools/detect/joint_track.hpp"
 #include "kinecal/tools/detect/listed.ipp"
 
 namespace kinecal {
+
+namespace detail {
+namespace {
+
+// Checks that the stamps of a joint track are usable.
+
+/// An error if stamps go back; a warning if joints were not measured throughout.
+/// @param all        from the first to the last reading of any joint
+/// @param in_motion  whether views are taken while the robot moves
+void check_stamps(const JointTrack& track, const Standstill& all, bool in_motion,
+                  const std::string& file, Diagnostics& diagnostics) {
+  const std::string about = "topic '" + printable(track.topic) + "': ";
+  if (track.back) {
+    diagnostics.error({file, 0},
+                      about + "stamps go back from " + seconds_text(track.back->end) + " to " +
+                          seconds_text(track.back->begin) +
+                          ": the clock was set, or a simulation began anew; cut the recording "
+                          "there");
+  }
+  constexpr double kMost = 0.9;
+  const auto [first, last] = std::minmax_element(track.stamps.begin(), track.stamps.end());
+  const std::chrono::duration<double> own = *last - *first, whole = all.end - all.begin;
+  if (own >= kMost * whole) return;
+  diagnostics.warning(
+      {file, 0}, about + "joints " + listed(track.names) + " were measured for " +
+                     seconds_text(*last - *first) + " of " + seconds_text(all.end - all.begin) +
+                     (in_motion ? ", and only then are views used; choose topics with --joints"
+                                : ", and only then is it known that they stand still; name those "
+                                  "that need not with --restless"));
+}
+
+}  // namespace
+}  // namespace detail
+
+// Chooses the topics that joint positions are taken from.
+
+inline void JointTracks::choose_topics(const std::vector<std::string>& topics,
+                                       const std::string& file, Diagnostics& diagnostics) {
+  std::set<std::string> known;
+  for (const detail::JointTrack& track : tracks_) known.insert(track.topic);
+  for (const std::string& topic : silent_) {
+    if (known.count(topic) > 0) continue;
+    diagnostics.warning({file, 0}, "topic '" + topic + "' has joint states without positions");
+  }
+  for (const auto& [joint, count] : not_finite_) {
+    diagnostics.warning({file, 0}, "topic '" + joint.first + "': the position of joint '" +
+                                       joint.second + "' is not a number in " +
+                                       std::to_string(count) + " messages");
+  }
+  for (const std::string& topic : topics) {
+    if (known.count(topic) > 0) continue;
+    diagnostics.error(
+        {file, 0}, "has no joint positions on topic '" + topic + "'" +
+                       did_you_mean(topic, std::vector<std::string>(known.begin(), known.end())));
+  }
+  std::erase_if(tracks_, [&](const detail::JointTrack& track) {
+    return !topics.empty() && std::find(topics.begin(), topics.end(), track.topic) == topics.end();
+  });
+  if (tracks_.empty() && diagnostics.errors.empty()) {
+    diagnostics.error({file, 0},
+                      "has no joint positions (sensor_msgs/JointState); record joint_states, too");
+  }
+}
+
+inline void JointTracks::settle_conflicts(const std::string& file, Diagnostics& diagnostics) {
+  std::map<std::string, std::set<std::string>> topics_of;
+  for (const detail::JointTrack& track : tracks_) {
+    for (const std::string& name : track.names) topics_of[name].insert(track.topic);
+  }
+  std::set<std::string> taken;
+  std::string conflict;
+  for (const auto& [joint, topics] : topics_of) {
+    if (topics.size() < 2) continue;
+    if (topics.count("joint_states") == 0) {
+      if (!conflict.empty()) continue;  // one example is enough
+      conflict = joint;
+      diagnostics.error({file, 0}, "joint '" + printable(joint) +
+                                       "' is on several topics: " + detail::listed(topics) +
+                                       "; choose those to use with --joints");
+    }
+    taken.insert(joint);
+  }
+  if (taken.empty() || !conflict.empty()) return;
+  diagnostics.notes.push_back(file + ": positions of " + detail::listed(taken) +
+                              " are taken from topic 'joint_states', although others have them");
+  for (detail::JointTrack& track : tracks_) {
+    if (track.topic == "joint_states") continue;
+    for (std::size_t i = 0; i < track.names.size(); ++i) {
+      if (taken.count(track.names[i]) > 0) track.used[i] = false;
+    }
+  }
+}
 
 void JointTracks::add(const std::string& topic, const MeasuredJoints& reading) {
   std::map<std::string, double> sorted;

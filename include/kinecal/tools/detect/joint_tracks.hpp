@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/capture/settling.hpp"
+#include "kinecal/capture/session/settling.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/tools/detect/joint_track.hpp"
 

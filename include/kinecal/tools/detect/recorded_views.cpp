@@ -3,18 +3,553 @@
 #include "kinecal/tools/detect/recorded_views.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <tuple>
 #include <utility>
+#include <vector>
 
+#include "kinecal/files/messages/camera_message.hpp"
+#include "kinecal/files/messages/decode.hpp"
+#include "kinecal/files/messages/known_definitions.hpp"
+#include "kinecal/files/messages/view_message.hpp"
 #include "kinecal/files/recordings/read_bag.hpp"
-#include "kinecal/tools/detect/intervals.ipp"
-#include "kinecal/tools/detect/raw_view.ipp"
-#include "kinecal/tools/detect/recorded_checks.ipp"
-#include "kinecal/tools/detect/recorded_survey.ipp"
-#include "kinecal/tools/detect/standstill_reader.ipp"
+#include "kinecal/geometry/median.hpp"
+#include "kinecal/text/counted.hpp"
+#include "kinecal/text/frame_name.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/printable.hpp"
+#include "kinecal/tools/detect/joint_tracks.hpp"
+#include "kinecal/tools/detect/listed.ipp"
 #include "kinecal/tools/detect/still_view.hpp"
+#include "kinecal/tools/detect/view_topics.hpp"
 
 namespace kinecal {
+
+namespace detail {
+
+// First pass over a recording: joint positions, camera settings, and times of images.
+
+/// The form of a topic's messages.
+struct MessageForm {
+  MessageDefinition definition;
+  Encoding encoding = Encoding::ros1;
+};
+
+/// Forms of topics.
+class MessageForms {
+ public:
+  /// @throws DefinitionError  if the bag's definition cannot be read
+  [[nodiscard]] std::shared_ptr<const MessageForm> of(const BagTopic& topic) {
+    auto& form = forms_[{topic.type, topic.definition, topic.encoding}];
+    if (!form) {
+      const std::string text = topic.definition.empty()
+                                   ? known_definition(topic.type, topic.encoding)
+                                   : topic.definition;
+      form = std::make_shared<const MessageForm>(
+          MessageForm{parse_definition(topic.type, text), topic.encoding});
+    }
+    return form;
+  }
+
+ private:
+  std::map<std::tuple<std::string, std::string, Encoding>, std::shared_ptr<const MessageForm>>
+      forms_;  ///< by type, definition and encoding
+};
+
+/// A message of images, depth or points in a recording.
+struct ViewStamp {
+  Stamp stamp;             ///< of the header; of recording if that is zero
+  std::int64_t ahead = 0;  ///< time of recording minus stamp, nanoseconds
+  std::size_t index = 0;   ///< among all messages of the topic
+};
+
+/// The stamp of a message's header, or the time of recording if that was not set.
+[[nodiscard]] inline Stamp stamp_of(const MessageFields& message, std::int64_t time) {
+  const Stamp stamp = header_stamp(message);
+  return stamp == Stamp{} ? Stamp(time) : stamp;
+}
+
+/// The content of a recording, without its images.
+struct RecordedSurvey {
+  struct Topic {
+    RecordedTopic topic;
+    std::vector<ViewStamp> views = {};      ///< readable ones
+    std::size_t messages = 0, damaged = 0;  ///< their numbers
+    std::size_t unstamped = 0;              ///< messages without a stamp
+    std::string damage = {};                ///< of the first one
+    std::optional<CameraInfo> camera = {};  ///< the first one
+    std::string image_part = {};            ///< the doubt about a partial image
+    bool camera_changes = false;
+  };
+  std::map<std::string, Topic> topics = {};  ///< by name
+  JointTracks joints = {};
+  std::vector<std::int64_t> joints_ahead = {};  ///< as ViewStamp::ahead
+
+  static bool wants(const BagTopic& topic) {
+    constexpr std::array<std::string_view, 5> kTypes = {
+        "sensor_msgs/JointState", "sensor_msgs/Image", "sensor_msgs/CompressedImage",
+        "sensor_msgs/PointCloud2", "sensor_msgs/CameraInfo"};
+    return std::find(kTypes.begin(), kTypes.end(), topic.type) != kTypes.end();
+  }
+
+  void add(const BagMessage& message, MessageForms& forms) {
+    Topic& topic =
+        topics.try_emplace(message.topic.name, Topic{{message.topic.name, message.topic.type}})
+            .first->second;
+    const std::size_t index = topic.messages++;
+    try {
+      const auto form = forms.of(message.topic);
+      const MessageFields content = decode(form->definition, form->encoding, message.data);
+      if (header_stamp(content) == Stamp{}) ++topic.unstamped;
+      const Stamp stamp = stamp_of(content, message.time);
+      take(topic, message.topic.type, content, {stamp, message.time - stamp.count(), index});
+    } catch (const std::runtime_error& error) {  // bytes or definition
+      if (topic.damaged++ == 0) topic.damage = error.what();
+    }
+  }
+
+  /// Sorts the views of each topic by stamps, after all messages were added.
+  void sort_views() {
+    for (auto& [name, topic] : topics) {
+      std::stable_sort(topic.views.begin(), topic.views.end(),
+                       [](const ViewStamp& a, const ViewStamp& b) { return a.stamp < b.stamp; });
+    }
+  }
+
+ private:
+  void take(Topic& topic, std::string_view type, const MessageFields& content,
+            const ViewStamp& view) {
+    if (type == "sensor_msgs/JointState") {
+      joints.add(topic.topic.name, joints_of(content, view.stamp));
+      joints_ahead.push_back(view.ahead);
+    } else if (type == "sensor_msgs/CameraInfo") {
+      const CameraInfo camera = camera_of(content);
+      const auto is_number = [](double x) { return std::isfinite(x); };
+      if (!std::all_of(camera.k.begin(), camera.k.end(), is_number) ||
+          !std::all_of(camera.p.begin(), camera.p.end(), is_number) ||
+          !std::all_of(camera.d.begin(), camera.d.end(), is_number)) {
+        throw std::runtime_error("its K, P or D has something that is not a number");
+      }
+      if (!topic.camera) {
+        topic.camera = camera;
+        topic.image_part = doubt_image_part(image_part_of(content), camera);
+      }
+      const CameraInfo& first = *topic.camera;
+      topic.camera_changes |= camera.k != first.k || camera.p != first.p || camera.d != first.d ||
+                              camera.width != first.width || camera.height != first.height;
+    } else {
+      if (topic.topic.encoding.empty()) {
+        const std::string_view encoding = text_at(content, "encoding");
+        topic.topic.encoding = encoding.empty() ? text_at(content, "format") : encoding;
+      }
+      topic.views.push_back(view);
+    }
+  }
+
+  /// @throws std::runtime_error  if names and positions differ in number, or a joint occurs twice
+  [[nodiscard]] static MeasuredJoints joints_of(const MessageFields& state, Stamp stamp) {
+    MeasuredJoints joints;
+    joints.stamp = stamp;
+    for (const MessageValue& name : list_at(state, "name")) {
+      if (const auto* text = name.as<std::string_view>()) joints.names.emplace_back(*text);
+    }
+    for (const MessageValue& position : list_at(state, "position")) {
+      position.visit_number([&](auto x) { joints.positions.push_back(static_cast<double>(x)); });
+    }
+    if (!joints.positions.empty() && joints.positions.size() != joints.names.size()) {
+      throw std::runtime_error("it has " + std::to_string(joints.names.size()) +
+                               " names of joints and " + std::to_string(joints.positions.size()) +
+                               " positions");
+    }
+    for (std::size_t i = 0; i < joints.positions.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (joints.names[i] != joints.names[j] || joints.positions[i] == joints.positions[j]) {
+          continue;
+        }
+        throw std::runtime_error("joint '" + joints.names[i] + "' is in it twice, at " +
+                                 std::to_string(joints.positions[j]) + " and " +
+                                 std::to_string(joints.positions[i]));
+      }
+    }
+    return joints;
+  }
+};
+
+// Undecoded messages of a recording that together form a view.
+
+/// Time between two messages of one moment, at most: as for live cameras.
+inline constexpr std::chrono::milliseconds kTogether{40};
+/// The same while the robot moves: 0.5 mrad of a joint at 0.1 rad/s.
+inline constexpr std::chrono::milliseconds kTogetherInMotion{5};
+
+/// One or two messages of one moment.
+struct RawView {
+  struct Part {
+    std::string topic;
+    std::size_t index = 0;                         ///< among all messages of the topic
+    std::shared_ptr<const MessageForm> form = {};  ///< nullptr before it was read
+    std::vector<std::byte> data = {};
+  };
+  Stamp stamp;
+  std::vector<Part> parts;
+
+  [[nodiscard]] bool complete() const {
+    return std::all_of(parts.begin(), parts.end(), [](const Part& p) { return p.form != nullptr; });
+  }
+};
+
+/// Topics of a camera's messages; the stamps of the first one count.
+[[nodiscard]] inline std::vector<std::string> parts_of(const ViewTopics& topics) {
+  std::vector<std::string> parts;
+  for (const std::string& topic : {topics.image, topics.depth, topics.cloud}) {
+    if (!topic.empty()) parts.push_back(topic);
+  }
+  return parts;
+}
+
+/// Decodes a view.
+/// @param frame  of the camera; empty: from the messages
+/// @throws std::runtime_error  naming the topic, if a message cannot be read
+[[nodiscard]] inline View decoded(const RawView& raw, const ViewTopics& topics,
+                                  const std::optional<CameraInfo>& camera,
+                                  const std::string& frame) {
+  View view;
+  view.stamp = raw.stamp;
+  view.camera = camera;
+  view.frame = frame;
+  for (const RawView::Part& part : raw.parts) {
+    try {
+      const MessageFields message = decode(part.form->definition, part.form->encoding, part.data);
+      if (view.frame.empty()) view.frame = plain_frame(text_at(message, "header.frame_id"));
+      if (part.topic == topics.image) {
+        view.image = gray_image(message);
+      } else if (part.topic == topics.cloud) {
+        read_cloud(message, view.points, view.image);
+      } else if (camera) {
+        view.points = points_of(depth_image(message), *camera);
+      } else {
+        throw std::runtime_error("depth becomes points only with a camera, which is not known");
+      }
+    } catch (const std::exception& error) {
+      throw std::runtime_error("topic '" + printable(part.topic) + "': " + error.what());
+    }
+  }
+  if (view.frame.empty()) {
+    throw std::runtime_error("topic '" + printable(raw.parts.front().topic) +
+                             "' has no frame_id; name the camera's frame with --frame");
+  }
+  return view;
+}
+
+/// Up to `most` items, evenly spread.
+template <class T>
+[[nodiscard]] std::vector<T> spread_out(const std::vector<T>& items, std::size_t most) {
+  if (items.size() <= most) return items;
+  std::vector<T> some;
+  for (std::size_t i = 0; i < most; ++i) some.push_back(items[i * (items.size() - 1) / (most - 1)]);
+  return some;
+}
+
+/// Candidate views of a standstill: a few in its middle two seconds, else the one nearest to its
+/// middle.  Skips its ends, because stamps and exposures are slightly off.
+/// @param views  sorted
+[[nodiscard]] inline std::vector<ViewStamp> worth_a_look(const std::vector<ViewStamp>& views,
+                                                         const Standstill& time) {
+  constexpr std::chrono::milliseconds kEnd{100}, kHalf{1000};
+  constexpr std::size_t kMost = 8;
+  const Stamp middle = time.begin + (time.end - time.begin) / 2;
+  const ViewStamp* nearest = nullptr;
+  std::vector<ViewStamp> within;
+  for (const ViewStamp& view : views) {
+    if (view.stamp < time.begin + kEnd || view.stamp > time.end - kEnd) continue;
+    const auto away = std::chrono::abs(view.stamp - middle);
+    if (away <= kHalf) within.push_back(view);
+    if (nearest == nullptr || away < std::chrono::abs(nearest->stamp - middle)) nearest = &view;
+  }
+  if (within.empty() && nearest != nullptr) within.push_back(*nearest);
+  return spread_out(within, kMost);
+}
+
+/// The view nearest to a moment; nullptr if absent.
+/// @param views  sorted
+[[nodiscard]] inline const ViewStamp* nearest_view(const std::vector<ViewStamp>& views,
+                                                   Stamp stamp) {
+  const auto next =
+      std::lower_bound(views.begin(), views.end(), stamp,
+                       [](const ViewStamp& view, Stamp moment) { return view.stamp < moment; });
+  if (next == views.begin()) return views.empty() ? nullptr : &views.front();
+  const auto last = next - 1;
+  return next == views.end() || stamp - last->stamp <= next->stamp - stamp ? &*last : &*next;
+}
+
+/// The message of another topic nearest in time, if near enough.
+/// @param views  sorted
+[[nodiscard]] inline const ViewStamp* companion(const std::vector<ViewStamp>& views, Stamp stamp,
+                                                Stamp most_apart) {
+  const ViewStamp* nearest = nearest_view(views, stamp);
+  const bool is_near = nearest != nullptr && std::chrono::abs(nearest->stamp - stamp) <= most_apart;
+  return is_near ? nearest : nullptr;
+}
+
+namespace {
+
+// Intervals of a recording that give a view each while the robot moves.
+
+/// The view of a camera nearest to the middle of an interval; none if it has none there.
+/// @param views  sorted
+[[nodiscard]] std::vector<ViewStamp> middle_view(const std::vector<ViewStamp>& views,
+                                                 const Standstill& time) {
+  const ViewStamp* nearest = nearest_view(views, time.begin + (time.end - time.begin) / 2);
+  if (nearest == nullptr || nearest->stamp < time.begin || nearest->stamp >= time.end) return {};
+  return {*nearest};
+}
+
+/// Intervals [begin, begin + every) from the first reading of a joint to the last, those in which a
+/// camera has a view.  The last one ends with the joints.
+[[nodiscard]] std::vector<Standstill> intervals_with_views(const RecordedSurvey& survey,
+                                                           const std::vector<ViewTopics>& cameras,
+                                                           Stamp every) {
+  const auto joints = survey.joints.span();
+  if (!joints) return {};
+  std::set<std::int64_t> numbers;
+  for (const ViewTopics& camera : cameras) {
+    for (const ViewStamp& view : survey.topics.at(parts_of(camera).front()).views) {
+      if (view.stamp < joints->begin || view.stamp > joints->end) continue;
+      numbers.insert((view.stamp - joints->begin) / every);
+    }
+  }
+  std::vector<Standstill> intervals;
+  for (const std::int64_t number : numbers) {
+    const Stamp begin = joints->begin + number * every;
+    intervals.push_back({begin, std::min(begin + every, joints->end + Stamp(1))});
+  }
+  return intervals;
+}
+
+/// Whether joints stand where they stood in another view.  A robot that swings comes by the same
+/// place at speed.
+[[nodiscard]] bool stand_there(const MeasuredJoints& joints, const MeasuredJoints& before) {
+  constexpr double kMoved = 1e-3;  // radians or metres
+  constexpr double kMoves = 1e-2;  // rad/s or m/s
+  for (std::size_t i = 0; i < joints.names.size(); ++i) {
+    const auto stood = before.position(joints.names[i]);
+    if (!stood || std::abs(unwrapped_step(*stood, joints.positions[i])) >= kMoved) return false;
+    if (std::abs(joints.velocities[i]) >= kMoves) return false;
+  }
+  return true;
+}
+
+/// Leaves out intervals in which the robot rests where it was in the last view.
+/// @returns  how many
+std::size_t leave_out_rests(const RecordedSurvey& survey, const std::vector<ViewTopics>& cameras,
+                            std::vector<Standstill>& intervals) {
+  MeasuredJoints last;
+  return std::erase_if(intervals, [&](const Standstill& time) {
+    for (const ViewTopics& camera : cameras) {
+      for (const ViewStamp& view :
+           middle_view(survey.topics.at(parts_of(camera).front()).views, time)) {
+        JointsInMotion now = survey.joints.motion(view.stamp);
+        if (!now.refusal.empty()) return false;  // the view says why it is refused
+        if (!last.names.empty() && stand_there(now.joints, last)) return true;
+        last = std::move(now.joints);
+        return false;
+      }
+    }
+    return false;
+  });
+}
+
+/// The intervals that give views; an error without any, a note about those left out.
+[[nodiscard]] std::vector<Standstill> find_intervals(const RecordedSurvey& survey,
+                                                     const std::vector<ViewTopics>& cameras,
+                                                     const RecordingOptions& options,
+                                                     Diagnostics& diagnostics) {
+  std::vector<Standstill> times = intervals_with_views(survey, cameras, options.every);
+  if (times.empty()) {
+    diagnostics.error({options.path, 0}, "has no image while joints are measured");
+    return times;
+  }
+  const std::size_t rests = leave_out_rests(survey, cameras, times);
+  if (rests > 0) {
+    diagnostics.notes.push_back(options.path + ": left out " + counted(rests, "view") +
+                                " in which the robot rests where it was in the view before");
+  }
+  return times;
+}
+
+// Checks a recording, and finds when the robot stood still.
+
+/// Warnings about skipped messages; an error if a camera has no others.
+void report_messages(const RecordedSurvey& survey, const std::vector<ViewTopics>& cameras,
+                     const std::string& file, Diagnostics& diagnostics) {
+  std::set<std::string> used;
+  for (const ViewTopics& camera : cameras) {
+    for (const std::string& topic : parts_of(camera)) used.insert(topic);
+    if (!camera.camera_info.empty()) used.insert(camera.camera_info);
+  }
+  for (const auto& [name, topic] : survey.topics) {
+    if (used.count(name) == 0 && topic.topic.type != "sensor_msgs/JointState") continue;
+    const std::string about = "topic '" + printable(name) + "': ";
+    if (topic.damaged > 0) {
+      const std::string text = about + std::to_string(topic.damaged) + " of " +
+                               std::to_string(topic.messages) +
+                               " messages cannot be read; the first: " + topic.damage;
+      if (topic.damaged == topic.messages && used.count(name) > 0) {
+        diagnostics.error({file, 0}, text);
+      } else {
+        diagnostics.warning({file, 0}, text);
+      }
+    }
+    if (topic.unstamped > topic.damaged) {
+      diagnostics.warning({file, 0}, about + std::to_string(topic.unstamped) +
+                                         " messages have no stamp; their times of recording are "
+                                         "used");
+    }
+    if (topic.camera_changes) {
+      diagnostics.warning({file, 0}, about + "the camera's settings change; the first are used");
+    }
+    if (!topic.image_part.empty()) diagnostics.warning({file, 0}, about + topic.image_part);
+  }
+}
+
+/// An error if camera and joints never overlap in time; a doubt if their clocks seem to differ.
+void check_clocks(const RecordedSurvey& survey, const std::vector<ViewTopics>& cameras,
+                  const std::string& file, Diagnostics& diagnostics) {
+  constexpr std::chrono::seconds kSameClock{1};
+  const auto joints = survey.joints.span();
+  for (const ViewTopics& camera : cameras) {
+    const std::string name = parts_of(camera).front();
+    const auto& views = survey.topics.at(name).views;
+    if (!joints || views.empty()) continue;
+    const auto [first, last] = std::minmax_element(
+        views.begin(), views.end(),
+        [](const ViewStamp& a, const ViewStamp& b) { return a.stamp < b.stamp; });
+    if (last->stamp < joints->begin || first->stamp > joints->end) {
+      diagnostics.error({file, 0}, "topic '" + printable(name) + "': its stamps are from " +
+                                       stamp_text(first->stamp) + " to " + stamp_text(last->stamp) +
+                                       ", those of the joint states from " +
+                                       stamp_text(joints->begin) + " to " +
+                                       stamp_text(joints->end) +
+                                       ": they are of another clock, or recorded at another time");
+      continue;
+    }
+    std::vector<std::int64_t> ahead;
+    for (const ViewStamp& view : views) ahead.push_back(view.ahead);
+    const Stamp apart(median_of(ahead) - median_of(survey.joints_ahead));
+    if (std::chrono::abs(apart) <= kSameClock) continue;
+    diagnostics.doubt({file, 0}, "topic '" + printable(name) + "': its stamps are " +
+                                     stamp_text(std::chrono::abs(apart)) +
+                                     (apart > Stamp{} ? " behind" : " ahead of") +
+                                     " those of the joint states, by the times of recording; "
+                                     "synchronise the clocks (ntp, use_sim_time)");
+  }
+}
+
+/// The times when the robot stood still; an error if it never did.
+[[nodiscard]] std::vector<Standstill> find_standstills(const RecordedSurvey& survey,
+                                                       const RecordingOptions& options,
+                                                       Diagnostics& diagnostics) {
+  const std::set<std::string> names = survey.joints.names();
+  for (const std::string& joint : options.restless) {
+    if (names.count(joint) > 0) continue;
+    diagnostics.error({options.path, 0}, "has no joint '" + printable(joint) + "'" +
+                                             did_you_mean(joint, std::vector<std::string>(
+                                                                     names.begin(), names.end())));
+  }
+  std::vector<Standstill> times = survey.joints.standstills(options.restless, options.settle);
+  if (!times.empty() || !diagnostics.errors.empty()) return times;
+  std::string text = "the robot never stands still for " + seconds_text(options.settle.window);
+  std::vector<std::string> moving = survey.joints.never_still(options.settle);
+  std::erase_if(moving,
+                [&](const std::string& joint) { return options.restless.count(joint) > 0; });
+  if (moving.empty() || moving.size() + options.restless.size() == names.size()) {
+    text += "; let it rest for a second in each pose";
+  } else {
+    text += ": joints " + listed(moving) +
+            " always move; name those that need not stand still with --restless";
+  }
+  diagnostics.error({options.path, 0}, text);
+  return times;
+}
+
+// Second pass over a recording: the messages of each standstill or interval.
+
+/// Second pass over a recording: delivers each standstill when all its messages were read.
+class StandstillReader {
+ public:
+  StandstillReader(std::vector<RecordedStandstill> standstills,
+                   const std::function<void(RecordedStandstill)>& handle)
+      : standstills_(std::move(standstills)), handle_(handle), missing_(standstills_.size(), 0) {
+    for (std::size_t s = 0; s < standstills_.size(); ++s) {
+      for (const auto& camera : standstills_[s].views) {
+        for (const auto& view : camera) {
+          for (RawView::Part& part : view->parts) {
+            wanted_[part.topic].emplace(part.index, Place{s, &part});
+            ++missing_[s];
+          }
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] bool wants(const BagTopic& topic) const {
+    return wanted_.count(topic.name) > 0 && RecordedSurvey::wants(topic);
+  }
+
+  void take(const BagMessage& message) {
+    const std::size_t index = count_[message.topic.name]++;
+    const auto [first, last] = wanted_[message.topic.name].equal_range(index);
+    for (auto at = first; at != last; ++at) {
+      const auto& [standstill, part] = at->second;
+      part->form = forms_.of(message.topic);
+      part->data.assign(message.data.begin(), message.data.end());
+      standstills_[standstill].bytes += part->data.size();
+      if (--missing_[standstill] == 0) give(standstill);
+    }
+  }
+
+  /// Delivers the rest: those without messages, and those that the recording has only in part.
+  void finish() {
+    for (std::size_t s = 0; s < standstills_.size(); ++s) {
+      if (!given_.count(s)) give(s);
+    }
+  }
+
+ private:
+  struct Place {
+    std::size_t standstill;
+    RawView::Part* part;
+  };
+
+  void give(std::size_t s) {
+    given_.insert(s);
+    for (auto& camera : standstills_[s].views) {
+      std::erase_if(camera, [](const auto& view) { return !view->complete(); });
+    }
+    handle_(std::move(standstills_[s]));
+  }
+
+  std::vector<RecordedStandstill> standstills_;
+  const std::function<void(RecordedStandstill)>& handle_;
+  std::vector<std::size_t> missing_;  ///< messages of each standstill
+  std::set<std::size_t> given_;
+  std::map<std::string, std::multimap<std::size_t, Place>> wanted_;  ///< by topic and index
+  std::map<std::string, std::size_t> count_;                         ///< messages so far
+  MessageForms forms_;
+};
+
+}  // namespace
+}  // namespace detail
 
 RecordedViews::RecordedViews(RecordingOptions options, const std::vector<CaptureFinder>& finders,
                              Diagnostics& diagnostics, const ProgressMeter& meter)

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <sstream>
 
-#include "kinecal/capture/image_motion.hpp"
-#include "kinecal/capture/settling.hpp"
+#include "kinecal/capture/finders/image_motion.hpp"
+#include "kinecal/capture/session/settling.hpp"
 
 namespace kinecal {
 namespace detail {

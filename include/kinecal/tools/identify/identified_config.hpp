@@ -9,7 +9,7 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/samples/sample.hpp"
-#include "kinecal/trust/identify.hpp"
+#include "kinecal/trust/search/identify.hpp"
 
 namespace kinecal {
 

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "kinecal/config/assemble.hpp"
-#include "kinecal/config/doubts/exchanged_joints.ipp"
+#include "kinecal/config/doubts/exchanged_joints.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/report/text.hpp"

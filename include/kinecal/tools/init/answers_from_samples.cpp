@@ -8,22 +8,130 @@
 #include <iterator>
 #include <limits>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/chain.hpp"
+#include "kinecal/samples/sample.hpp"
 #include "kinecal/text/shell_command.hpp"
+#include "kinecal/tools/init/init_answers.hpp"
 #include "kinecal/tools/init/possible_targets.hpp"
-#include "kinecal/tools/init/recorded_joints.ipp"
 #include "kinecal/tools/init/robot_parts.hpp"
-#include "kinecal/tools/init/seen_sensors.ipp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
+
+// The joints that samples have.
+
+/// @throws InputError  if the samples have joints, but none of the robot's
+void check_joints_of(const Robot& robot, const std::vector<Sample>& samples) {
+  std::set<std::string> names;
+  for (const Sample& sample : samples) {
+    names.insert(sample.joint_names.begin(), sample.joint_names.end());
+  }
+  if (names.empty() || std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+        return robot.has_joint(name);
+      })) {
+    return;
+  }
+  throw InputError(
+      fmt::format("--from: none of the joints of the samples ({}, ...) is in the URDF of '{}'; "
+                  "give the URDF of their robot",
+                  *names.begin(), robot.name()));
+}
+
+/// The link from which all joints are in the samples, if both ends hang on it: the joint of a rail or a torso that
+/// nobody recorded moves them together.  Empty if no joint is missing, or one beyond a recorded joint.
+[[nodiscard]] std::string recorded_base(const Robot& robot, const std::vector<Sample>& samples,
+                                        const InitAnswers& answers) {
+  const std::string& end = needs_arm(answers.target) ? answers.arm : answers.camera;
+  if (!robot.has_link(end)) return "";
+  const bool has_both = needs_arm(answers.target) && needs_camera(answers.target);
+  std::set<std::string> of_other;  // joints that move the other end, too
+  if (has_both && robot.has_link(answers.camera)) {
+    for (const Joint* joint : joints_to_root(robot, answers.camera)) of_other.insert(joint->name);
+  }
+  std::string base;
+  for (const Joint* joint : joints_to_root(robot, end)) {  // from the end
+    if (joint->type == JointType::floating || joint->type == JointType::planar) break;
+    if (!moves(joint->type)) continue;
+    const std::string driver = drive(robot, *joint).joint;
+    const bool is_recorded = std::any_of(samples.begin(), samples.end(), [&](const Sample& sample) {
+      return sample.position(driver).has_value();
+    });
+    if (is_recorded && !base.empty()) return "";
+    if (is_recorded || !base.empty()) continue;
+    if (has_both && !of_other.contains(joint->name)) return "";
+    base = joint->child;
+  }
+  return base;
+}
+
+// What samples have of each sensor.
+
+/// What the samples have of one sensor.
+struct SeenSensor {
+  std::string name;
+  std::vector<std::string> frames = {};  ///< of its features
+  bool is_camera = false;
+  bool in_pixels = true;  ///< every z is zero
+  bool varies = false;    ///< its features differ between samples
+  std::size_t alone = 0;  ///< samples in which only it observes
+  std::vector<Feature> first = {};
+};
+
+void add_features(SeenSensor& sensor, const Observation& seen) {
+  sensor.is_camera = sensor.is_camera || seen.camera.has_value();
+  for (const Feature& feature : seen.features) {
+    if (std::find(sensor.frames.begin(), sensor.frames.end(), feature.frame) ==
+        sensor.frames.end()) {
+      sensor.frames.push_back(feature.frame);
+    }
+    sensor.in_pixels = sensor.in_pixels && feature.point.z() == 0.0;
+    // Of the same feature: a view may have only some corners of a board.
+    const auto before =
+        std::find_if(sensor.first.begin(), sensor.first.end(), [&](const Feature& known) {
+          return known.frame == feature.frame && known.id == feature.id &&
+                 (feature.id || &known - sensor.first.data() == &feature - seen.features.data());
+        });
+    if (before == sensor.first.end()) {
+      sensor.first.push_back(feature);
+    } else if ((before->point - feature.point).norm() > 1e-6) {
+      sensor.varies = true;
+    }
+  }
+}
+
+/// All sensors, in the order of their first observations.
+[[nodiscard]] std::vector<SeenSensor> sensors_of(std::span<const Sample> samples) {
+  std::vector<SeenSensor> sensors;
+  for (const Sample& sample : samples) {
+    for (const Observation& seen : sample.observations) {
+      auto sensor = std::find_if(sensors.begin(), sensors.end(),
+                                 [&](const SeenSensor& s) { return s.name == seen.sensor; });
+      if (sensor == sensors.end()) {
+        sensors.push_back({seen.sensor});
+        sensor = std::prev(sensors.end());
+      }
+      add_features(*sensor, seen);
+      if (sample.observations.size() == 1) ++sensor->alone;
+    }
+  }
+  return sensors;
+}
+
+[[nodiscard]] std::string names_of(const std::vector<const SeenSensor*>& sensors) {
+  std::string names;
+  for (const SeenSensor* sensor : sensors) {
+    names += (names.empty() ? "'" : ", '") + sensor->name + "'";
+  }
+  return names;
+}
 
 /// The sum of the ranges of a link's own joints in the samples: those that do not move a camera.
 [[nodiscard]] double motion_of(const Robot& robot, std::span<const Sample> samples,

@@ -2,16 +2,214 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/tools/init/determined_offsets.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <map>
+#include <numbers>
+#include <random>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "kinecal/tools/init/generated_poses.ipp"
+#include "kinecal/geometry/pose.hpp"
+#include "kinecal/kinematics/chain.hpp"
+#include "kinecal/kinematics/floating_joint.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
+#include "kinecal/kinematics/robot.hpp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
+
+// Random positions of joints.
+
+/// From -1 to 1; equal for equal seeds on every platform.
+[[nodiscard]] double random_number(std::mt19937_64& random) {
+  return static_cast<double>(random() >> 11) * 0x1p-52 - 1.0;
+}
+
+/// A joint of a robot, or a coordinate of a floating one.
+[[nodiscard]] Joint driven(const Robot& robot, const std::string& name) {
+  const auto part = floating_coordinate(name);
+  if (!part) return robot.joint(name);
+  return {name, part->index < 3 ? JointType::prismatic : JointType::continuous, {}, {}};
+}
+
+/// A position within limits; without limits, up to half a turn or half a metre to either side.
+[[nodiscard]] double random_position(const Joint& joint, std::mt19937_64& random) {
+  const double most = turns(joint.type) ? std::numbers::pi : 0.5, share = random_number(random);
+  const bool limited = joint.type != JointType::continuous && joint.limits &&
+                       joint.limits->upper > joint.limits->lower;
+  if (!limited) return most * share;
+  return 0.5 * (joint.limits->lower + joint.limits->upper) +
+         0.5 * share * (joint.limits->upper - joint.limits->lower);
+}
+
+// Random poses of a robot, and what a sensor measures in them.
+
+using NamedNumbers = std::map<std::string, double>;      ///< of joints: radians and metres
+using NamedPoses = std::map<std::string, Pose<double>>;  ///< corrections of frames
+
+/// A robot with a target and a sensor in generated poses.
+class GeneratedPoses {
+ public:
+  /// @param frames  joints that may have corrections
+  GeneratedPoses(const Robot& robot, MeasuredTarget measured, const std::set<std::string>& frames)
+      : robot_(robot),
+        measured_(std::move(measured)),
+        to_target_(make_chain(robot, measured_.base, measured_.target, frames)),
+        to_sensor_(make_chain(robot, measured_.base, measured_.sensor, frames)) {
+    std::set<std::string> drives;
+    for (const RuntimeChain* chain : {&to_target_, &to_sensor_}) {
+      for (const ChainJoint& joint : chain->joints) {
+        if (moves(joint.type)) drives.insert(joint.drive.joint);
+      }
+    }
+    place();
+    generate(drives);
+  }
+
+  /// Number of poses.
+  [[nodiscard]] std::size_t size() const { return poses_.size(); }
+
+  /// The points that the sensor measures in all poses (3 or, in pixels, 2 each).
+  /// @param offsets      of joints
+  /// @param corrections  of frames
+  [[nodiscard]] Eigen::VectorXd measured(const NamedNumbers& offsets,
+                                         const NamedPoses& corrections) const {
+    const Eigen::Index rows = row_count();
+    Eigen::VectorXd all(rows * static_cast<Eigen::Index>(poses_.size() * points_.size()));
+    Eigen::Index at = 0;
+    for (const NamedNumbers& pose : poses_) {
+      const Pose<double> sensor_T_target = seen_from(pose, offsets, corrections);
+      for (const Vector3<double>& point : points_) {
+        const Vector3<double> p = sensor_T_target * point;
+        all.segment(at, rows) =
+            in_pixels() ? Eigen::VectorXd(p.head<2>() / p.z()) : Eigen::VectorXd(p);
+        at += rows;
+      }
+    }
+    return all;
+  }
+
+  /// How the camera's parameters change these: focal lengths, centre and, with depth, its offset
+  /// and scale.
+  [[nodiscard]] std::vector<Eigen::VectorXd> camera_columns() const {
+    if (!measured_.is_camera) return {};
+    const Eigen::VectorXd all = measured({}, {});
+    const Eigen::Index rows = row_count();
+    std::vector<Eigen::VectorXd> columns(in_pixels() ? 4 : 6, Eigen::VectorXd::Zero(all.size()));
+    for (Eigen::Index at = 0; at < all.size(); at += rows) {
+      const double z = in_pixels() ? 1.0 : all(at + 2);
+      columns[0](at) = all(at);
+      columns[1](at + 1) = all(at + 1);
+      columns[2](at) = columns[3](at + 1) = z;
+      if (in_pixels()) continue;
+      columns[4].segment(at, rows) = all.segment(at, rows) / z;
+      columns[5].segment(at, rows) = all.segment(at, rows);
+    }
+    return columns;
+  }
+
+ private:
+  [[nodiscard]] bool in_pixels() const { return measured_.is_camera && !measured_.has_depth; }
+  [[nodiscard]] Eigen::Index row_count() const { return in_pixels() ? 2 : 3; }
+
+  [[nodiscard]] Pose<double> end_of(const RuntimeChain& chain, const NamedNumbers& pose,
+                                    const NamedNumbers& offsets,
+                                    const NamedPoses& corrections) const {
+    Corrections<double> of(chain.joints.size());
+    for (std::size_t i = 0; i < chain.joints.size(); ++i) {
+      const auto found = corrections.find(chain.joints[i].name);
+      if (found != corrections.end()) of[i].frame = found->second;
+    }
+    const auto at = [&](const std::string& joint) {
+      const auto offset = offsets.find(joint);
+      return pose.at(joint) + (offset == offsets.end() ? 0.0 : offset->second);
+    };
+    return forward_kinematics(chain, at, of);
+  }
+
+  [[nodiscard]] Pose<double> seen_from(const NamedNumbers& pose, const NamedNumbers& offsets,
+                                       const NamedPoses& corrections) const {
+    const auto correction = [&](const std::string& frame) {
+      const auto found = corrections.find(frame);
+      return found == corrections.end() ? Pose<double>() : found->second;
+    };
+    const Pose<double> base_T_target = end_of(to_target_, pose, offsets, corrections) *
+                                       link_T_target_ * correction(measured_.target_frame);
+    const Pose<double> base_T_sensor = end_of(to_sensor_, pose, offsets, corrections) *
+                                       link_T_sensor_ * correction(measured_.sensor_frame);
+    return base_T_sensor.inverse() * base_T_target;
+  }
+
+  /// Somewhere, as no place is special: on the axis of the last joint, a reflector would not show it.
+  void place() {
+    constexpr double kAside = 0.1, kAway = 1.0;  // metres
+    const Vector3<double> away(0.5, -0.6, 0.7);
+    link_T_target_.translation = kAside * away;
+    if (!measured_.target_frame.empty() && !measured_.is_point) {
+      link_T_target_.rotation = exp(Vector3<double>(0.4, 0.9, -0.3));
+    }
+    if (!measured_.sensor_frame.empty()) {
+      link_T_sensor_.translation = kAway * away;
+      link_T_sensor_.rotation = exp(Vector3<double>(-0.7, 0.2, 1.1));
+    }
+    points_ = {Vector3<double>::Zero()};
+    if (measured_.is_point) return;
+    points_.insert(points_.end(), {{0.15, 0.0, 0.0}, {0.0, 0.12, 0.0}, {0.1, 0.1, 0.05}});
+  }
+
+  /// Whether all points are within 60 degrees of the camera's axis.
+  /// @param side  1: in front of it; -1: behind it, where the formula holds as well
+  [[nodiscard]] bool is_visible(const NamedNumbers& pose, double side) const {
+    const Pose<double> sensor_T_target = seen_from(pose, {}, {});
+    return std::all_of(points_.begin(), points_.end(), [&](const Vector3<double>& point) {
+      const Vector3<double> p = sensor_T_target * point;
+      return side * p.z() > 0.1 && p.head<2>().norm() < 1.7 * side * p.z();
+    });
+  }
+
+  void generate(const std::set<std::string>& drives) {
+    constexpr std::size_t kPoses = 60;
+    constexpr int kTries = 3000;
+    std::mt19937_64 random(1);
+    std::vector<NamedNumbers> others;  // behind the camera: only if nothing is in front of it
+    for (int i = 0; i < kTries && poses_.size() < kPoses; ++i) {
+      NamedNumbers pose;
+      for (const std::string& joint : drives) {
+        pose[joint] = random_position(driven(robot_, joint), random);
+      }
+      if (i == 0 && measured_.is_camera && measured_.target == measured_.base) {
+        put_before_camera(pose);
+      }
+      if (!measured_.is_camera || is_visible(pose, 1.0)) {
+        poses_.push_back(pose);
+      } else if (others.size() < kPoses && is_visible(pose, -1.0)) {
+        others.push_back(pose);
+      }
+    }
+    if (poses_.size() < kPoses / 2) poses_.insert(poses_.end(), others.begin(), others.end());
+  }
+
+  /// Puts a board that stands still where the camera sees it in one pose.
+  void put_before_camera(const NamedNumbers& pose) {
+    Pose<double> ahead;
+    ahead.translation = {0.05, -0.05, 0.7};
+    link_T_target_ =
+        end_of(to_target_, pose, {}, {}).inverse() * (end_of(to_sensor_, pose, {}, {}) * ahead);
+    link_T_target_.rotation = link_T_target_.rotation * exp(Vector3<double>(0.3, 0.2, 0.5));
+  }
+
+  const Robot& robot_;
+  MeasuredTarget measured_;
+  RuntimeChain to_target_, to_sensor_;
+  Pose<double> link_T_target_, link_T_sensor_;
+  std::vector<Vector3<double>> points_;
+  std::vector<NamedNumbers> poses_;
+};
 
 /// Of an offset's effect, what must be left beside free frames.  With a length of 0.5 m, an offset
 /// of 1 degree below it moves no point by more than 0.01 mm; axes that a URDF rounds to 1.57 stay

@@ -9,14 +9,480 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
+#include "kinecal/kinematics/chain.hpp"
 #include "kinecal/text/nearest_name.hpp"
-#include "kinecal/tools/init/check_answers.ipp"
-#include "kinecal/tools/init/plan_targets.ipp"
+#include "kinecal/tools/init/camera_parts.ipp"
+#include "kinecal/tools/init/determined_offsets.hpp"
+#include "kinecal/tools/init/init_answers.hpp"
 
 namespace kinecal {
+
+namespace detail {
+namespace {
+
+// The content of a first configuration: the entries of its lists, each with its reason.
+
+/// One entry of a list: a comment, a name, and keys with YAML values.  Without keys, only the name.
+struct InitEntry {
+  std::string why;
+  std::string name;  ///< not yet quoted for YAML
+  std::vector<std::pair<std::string, std::string>> fields;
+};
+
+/// An offset that is not freed, with the reason.
+struct InitLeftOut {
+  std::string joint, why;
+};
+
+struct InitPlan {
+  std::vector<InitEntry> models, free_params, free_frames, initial_values, error_blocks;
+  std::vector<InitLeftOut> left_out;
+};
+
+/// The initial value of a frame that is not in the URDF: zeros, to be replaced by hand.
+void add_initial_value(InitPlan& plan, const std::string& frame, const std::string& why) {
+  plan.initial_values.push_back({why, frame, {}});
+  for (const char* key : {"x", "y", "z", "roll", "pitch", "yaw"}) {
+    plan.initial_values.back().fields.emplace_back(key, "0.0");
+  }
+}
+
+/// Frees a frame once: its position and, unless it is the frame of a point, its rotation.
+void free_frame(InitPlan& plan, const std::string& name, const std::string& why,
+                bool is_point = false) {
+  for (const InitEntry& frame : plan.free_frames) {
+    if (frame.name == name) return;
+  }
+  plan.free_frames.push_back({why, name, {}});
+  const std::array<const char*, 6> axes = {"x", "y", "z", "roll", "pitch", "yaw"};
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    plan.free_frames.back().fields.emplace_back(axes[i], i < 3 || !is_point ? "true" : "false");
+  }
+}
+
+/// The joints that move between two links.
+/// @throws RobotError  like make_chain()
+[[nodiscard]] std::vector<ChainJoint> movers(const Robot& robot, const std::string& base,
+                                             const std::string& tip) {
+  return make_chain(robot, base, tip).joints;
+}
+
+/// Removes the common joints at the beginning of two chains.
+void remove_common(std::vector<ChainJoint>& a, std::vector<ChainJoint>& b) {
+  while (!a.empty() && !b.empty() && a.front().name == b.front().name) {
+    a.erase(a.begin());
+    b.erase(b.begin());
+  }
+}
+
+/// Frees the offsets of joints that samples determine, and gives the reason for the others.
+/// @returns  whether samples also determine the frames
+bool free_offsets(InitPlan& plan, const Robot& robot, const MeasuredTarget& measured,
+                  const std::vector<std::string>& frames) {
+  const OffsetEffects effects =
+      offset_effects(robot, measured, frames, driven_joints(robot, measured));
+  for (const OffsetEffect& effect : effects.offsets) {
+    if (effect.determined) {
+      plan.free_params.push_back({"", effect.joint, {}});
+    } else if (!effect.is_seen) {
+      plan.left_out.push_back({effect.joint, "It moves the arm and the camera alike"});
+    } else if (effect.imitated_by == effect.joint) {
+      plan.left_out.push_back({effect.joint, "Its frame is free, which includes its offset"});
+    } else if (!effect.imitated_by.empty()) {
+      plan.left_out.push_back(
+          {effect.joint, "Frame " + name_to_yaml(effect.imitated_by) +
+                             " is free, and no sample can distinguish its rotation (or "
+                             "shift) from this joint's offset"});
+    } else {
+      plan.left_out.push_back({effect.joint,
+                               "No sample can distinguish its offset from changes of the free "
+                               "frames and of the offsets above"});
+    }
+  }
+  for (const std::string& end : {measured.target, measured.sensor}) {
+    for (const ChainJoint& joint : movers(robot, measured.base, end)) {
+      const auto is_known = [&](const InitLeftOut& known) { return known.joint == joint.name; };
+      if (joint.drive.joint == joint.name ||
+          std::any_of(plan.left_out.begin(), plan.left_out.end(), is_known)) {
+        continue;
+      }
+      plan.left_out.push_back({joint.name, "It mimics joint " + name_to_yaml(joint.drive.joint) +
+                                               ", which has the offset"});
+    }
+  }
+  return effects.frames_determined;
+}
+
+// Entries of a first configuration that several targets share: models, the camera's parameters,
+// error blocks, a board.
+
+void add_chain_model(InitPlan& plan, const std::string& why, const std::string& name,
+                     const std::string& link) {
+  plan.models.push_back({why, name, {{"type", "chain3d"}, {"frame", name_to_yaml(link)}}});
+}
+
+void add_camera_model(InitPlan& plan, const InitAnswers& answers) {
+  const bool depth = answers.camera_type == "camera3d";
+  plan.models.push_back({depth ? "A depth camera: points in metres, in its optical frame."
+                               : "A camera: pixels.  In its frame z points ahead and y down.",
+                         answers.camera_name,
+                         {{"type", answers.camera_type}, {"frame", name_to_yaml(answers.camera)}}});
+}
+
+/// Frees the camera's parameters.
+/// @param floor_only  only those that the floor determines
+void free_camera(InitPlan& plan, const InitAnswers& answers, bool floor_only) {
+  const auto add = [&](const char* part, const std::string& why) {
+    plan.free_params.push_back({why, answers.camera_name + "_" + part, {}});
+  };
+  if (!floor_only) {
+    add("fx",
+        "Focal lengths and image centre, relative to the driver's values: 0.01 is one percent.");
+    for (const char* part : {"fy", "cx", "cy"}) add(part, "");
+  }
+  if (answers.camera_type != "camera3d") return;
+  add("z_offset", "Depth: z = (1 + z_scaling) * (measured z + z_offset), z_offset in metres.");
+  add("z_scaling", "");
+}
+
+/// Compares the points seen by the camera with those of a model.
+void add_hand_eye(InitPlan& plan, const InitAnswers& answers) {
+  const std::string model = holder_of(answers);
+  InitEntry block{"", "hand_eye", {}};
+  if (answers.camera_type == "camera3d") {
+    block.why = "The camera and model '" + model +
+                "' observe the same points, in the same order.  sigma is the camera's accuracy for "
+                "one point, in metres: 0.003 is a guess, write yours.";
+    block.fields = {{"type", "chain3d_to_chain3d"},
+                    {"model_a", name_to_yaml(answers.camera_name)},
+                    {"model_b", name_to_yaml(model)},
+                    {"sigma", "0.003"}};
+  } else {
+    block.why = "The camera sees the points of model '" + model +
+                "', in the same order.  sigma is its accuracy for one point, in "
+                "pixels: 0.5 is a guess, write yours.";
+    block.fields = {{"type", "chain3d_to_camera2d"},
+                    {"model_3d", name_to_yaml(model)},
+                    {"model_2d", name_to_yaml(answers.camera_name)},
+                    {"sigma", "0.5"}};
+  }
+  block.fields.emplace_back("loss", "{type: huber, scale: 3.0}");
+  plan.error_blocks.push_back(std::move(block));
+}
+
+void add_ground(InitPlan& plan, const InitAnswers& answers) {
+  plan.error_blocks.push_back({"The floor: a x + b y + c z + d = 0 in link " +
+                                   name_to_yaml(answers.base) +
+                                   ".  Set d if the origin of this link is not on the floor (0.1 m "
+                                   "above it: d: 0.1).  'alone' selects "
+                                   "the samples in which only the camera observes.  sigma, the "
+                                   "camera's accuracy for one point in metres, is a guess.",
+                               "ground_plane",
+                               {{"type", "chain3d_to_plane"},
+                                {"model", name_to_yaml(answers.camera_name)},
+                                {"a", "0.0"},
+                                {"b", "0.0"},
+                                {"c", "1.0"},
+                                {"d", "0.0"},
+                                {"samples", "alone"},
+                                {"sigma", "0.003"},
+                                {"loss", "{type: huber, scale: 3.0}"}}});
+}
+
+/// Keeps a frame near zero in the directions that samples do not determine.
+void keep_near_zero(InitPlan& plan, const std::string& frame, const std::string& why) {
+  plan.error_blocks.push_back(
+      {why + "  It counts once per sample: with 100 samples, these scales weigh as much as one "
+             "measurement with an accuracy of 0.1 m and 6 degrees.",
+       "restrict_" + frame,
+       {{"type", "outrageous"},
+        {"param", name_to_yaml(frame)},
+        {"joint_scale", "0.0"},
+        {"position_scale", "1.0"},
+        {"rotation_scale", "1.0"}}});
+}
+
+/// The joint whose frame describes the camera's mount.
+/// @throws InputError  if there is no such joint
+[[nodiscard]] const Joint& require_mount(const Robot& robot, const InitAnswers& answers,
+                                         const std::vector<std::string>& others) {
+  const Joint* mount = camera_mount(robot, answers.camera, others);
+  if (mount == nullptr) {
+    throw InputError(
+        fmt::format("--camera: no joint that could be corrected belongs to link '{}' alone; choose "
+                    "another link, or another --base or --arm",
+                    answers.camera));
+  }
+  return *mount;
+}
+
+/// Frees the frame of a board that is in the gripper or fixed in the world.
+void add_board(InitPlan& plan, const std::string& name, const std::string& link) {
+  free_frame(
+      plan, name,
+      "Where the board is, seen from link " + name_to_yaml(link) +
+          ".  The URDF does not contain this frame; it is the frame_id of the board's corners.");
+  add_initial_value(plan, name,
+                    "Zeros are no guess: kinecal searches for the board.  Should it not find it, "
+                    "measure where the board's first corner is in link " +
+                        name_to_yaml(link) +
+                        " and how the board is turned (x along its rows, y along its columns).");
+}
+
+/// Points on a link, or of a board in the target frame on it, that the camera sees.
+[[nodiscard]] MeasuredTarget seen_by_camera(const InitAnswers& answers, const std::string& link) {
+  MeasuredTarget seen{answers.base, link, answers.camera};
+  seen.target_frame = answers.target_frame;
+  seen.is_camera = true;
+  seen.has_depth = answers.camera_type == "camera3d";
+  return seen;
+}
+
+// The offsets and frames that each target determines: these are freed, the others left out.
+//
+// A free frame can replace a joint's offset: the rotation of a tracker that of the first joint, the
+// position of a reflector that of the last.  With both free, the samples would only determine their
+// sum.  So the offset is left out, and the configuration gives the reason: determined_offsets.hpp.
+
+/// LEDs or a board on the gripper, seen by a camera that does not move with it.
+[[nodiscard]] InitPlan plan_hand_eye(const Robot& robot, const InitAnswers& answers) {
+  InitPlan plan;
+  std::vector<ChainJoint> arm = movers(robot, answers.base, answers.arm);
+  std::vector<ChainJoint> head = movers(robot, answers.base, answers.camera);
+  remove_common(arm, head);
+  if (arm.empty()) {
+    throw InputError(fmt::format(
+        "--camera: camera '{}' moves with arm '{}' and sees the same in every pose; let it see a "
+        "board in the world: --target world_checkerboard",
+        answers.camera, answers.arm));
+  }
+  const bool board = answers.target == InitTarget::checkerboard;
+  add_chain_model(plan,
+                  board ? "The arm, which holds the board: the points are the board's corners."
+                        : "The arm: the points are the LEDs, at known places in this link.",
+                  holder_of(answers), answers.arm);
+  add_camera_model(plan, answers);
+
+  const std::string mount = require_mount(robot, answers, {answers.base, answers.arm}).name;
+  const std::string head_frame = head.empty() ? mount : head.front().name;
+  if (board) add_board(plan, answers.target_frame, answers.arm);
+  MeasuredTarget seen = seen_by_camera(answers, answers.arm);
+  if (!board) seen.target_frame.clear();
+  std::vector<std::string> frames = {head_frame};
+  if (mount != head_frame) frames.push_back(mount);
+  const bool determined = free_offsets(plan, robot, seen, frames);
+  if (!head.empty()) {
+    free_frame(plan, head_frame, "How the part that carries the camera is mounted on the robot.");
+  }
+  free_frame(plan, mount, "How the camera is mounted.");
+  free_camera(plan, answers, false);
+  add_hand_eye(plan, answers);
+  if (!determined) {
+    keep_near_zero(plan, mount,
+                   "The joints cannot show all of the camera's frame beside the others: this block "
+                   "keeps its correction small.");
+  }
+  return plan;
+}
+
+/// A board in the world, seen by a camera that the robot moves.
+[[nodiscard]] InitPlan plan_world_checkerboard(const Robot& robot, const InitAnswers& answers) {
+  InitPlan plan;
+  const std::vector<ChainJoint> way = movers(robot, answers.base, answers.camera);
+  if (way.empty()) {
+    throw InputError(fmt::format(
+        "--camera: camera '{}' does not move relative to link '{}', so a board that stands in the "
+        "world determines nothing; choose another link, or another --base",
+        answers.camera, answers.base));
+  }
+  add_chain_model(plan, "The board, which stands still in this link: the points are its corners.",
+                  holder_of(answers), answers.base);
+  add_camera_model(plan, answers);
+  const std::string mount = require_mount(robot, answers, {answers.base}).name;
+  add_board(plan, answers.target_frame, answers.base);
+  const bool determined = free_offsets(plan, robot, seen_by_camera(answers, answers.base), {mount});
+  free_frame(plan, mount, "How the camera is mounted.");
+  free_camera(plan, answers, false);
+  add_hand_eye(plan, answers);
+  if (!determined) {
+    keep_near_zero(plan, mount,
+                   "The camera does not turn about two axes, so samples cannot distinguish all of "
+                   "its frame from the board's: this block keeps the correction of the camera's "
+                   "frame small.");
+  }
+  return plan;
+}
+
+/// A reflector on the arm and a tracker fixed in the world.
+[[nodiscard]] InitPlan plan_tracker(const Robot& robot, const InitAnswers& answers) {
+  InitPlan plan;
+  const std::vector<ChainJoint> way = movers(robot, answers.base, answers.arm);
+  if (way.empty()) {
+    throw InputError(
+        fmt::format("--arm: link '{}' does not move relative to link '{}'; choose another link, or "
+                    "another --base",
+                    answers.arm, answers.base));
+  }
+  const std::string &tracker = answers.tracker_frame, &reflector = answers.target_frame;
+  std::vector<std::string> reflectors = answers.more_reflectors;
+  reflectors.insert(reflectors.begin(), reflector);
+  add_chain_model(plan,
+                  reflectors.size() == 1
+                      ? "The arm: the reflector is point (0, 0, 0) of frame " + reflector + "."
+                      : "The arm: each reflector is point (0, 0, 0) of its frame.",
+                  holder_of(answers), answers.arm);
+  add_chain_model(
+      plan,
+      "The tracker, which stands still in this link: measured points in frame " + tracker + ".",
+      tracker_of(answers), answers.base);
+  MeasuredTarget followed{answers.base, answers.arm, answers.base};
+  followed.target_frame = reflector;
+  followed.is_point = true;
+  followed.sensor_frame = tracker;
+  const bool determined = free_offsets(plan, robot, followed, {});
+  free_frame(
+      plan, tracker,
+      "Where the tracker stands, seen from link " + name_to_yaml(answers.base) +
+          ".  The URDF does not contain this frame; it is the frame_id of the measured points.");
+  for (const std::string& frame : reflectors) {
+    free_frame(plan, frame,
+               "Where the reflector (SMR) is in link " + name_to_yaml(answers.arm) +
+                   "; a point has no rotation.  The URDF does not contain this frame either.",
+               true);
+  }
+  add_initial_value(plan, tracker,
+                    "Zeros are no guess: kinecal searches for the tracker.  Should it not find it, "
+                    "measure where it stands and how it is turned.");
+  for (const std::string& frame : reflectors) add_initial_value(plan, frame, "");
+  InitEntry measured{
+      "Both observe the same point.  The noise is what residuals show; 'sigma' would give it.",
+      "measured",
+      {{"type", "chain3d_to_chain3d"},
+       {"model_a", name_to_yaml(holder_of(answers))},
+       {"model_b", name_to_yaml(tracker_of(answers))}}};
+  if (!determined) {  // the prior below is weighed against it
+    measured.why =
+        "Both observe the same point.  sigma combines the accuracy of the tracker and the "
+        "repeatability of the robot, in metres: 0.0001 is a guess, write yours.";
+    measured.fields.emplace_back("sigma", "0.0001");
+  }
+  measured.fields.emplace_back("loss", "{type: huber, scale: 3.0}");
+  plan.error_blocks.push_back(std::move(measured));
+  if (!determined) {
+    keep_near_zero(plan, reflector,
+                   "The arm does not turn about two axes, so samples cannot distinguish all of the "
+                   "reflector's position from the tracker's: this block keeps the reflector near "
+                   "the origin of its link.");
+  }
+  return plan;
+}
+
+/// The floor alone.
+[[nodiscard]] InitPlan plan_ground(const Robot& robot, const InitAnswers& answers) {
+  InitPlan plan;
+  add_camera_model(plan, answers);
+  const std::string mount = require_mount(robot, answers, {answers.base}).name;
+  for (const ChainJoint& joint : movers(robot, answers.base, answers.camera)) {
+    plan.left_out.push_back({joint.name,
+                             "The floor determines the camera's height and tilt, not which joint "
+                             "or frame is wrong; the camera's frame stands for all of them"});
+  }
+  free_frame(plan, mount, "How the camera is mounted.");
+  free_camera(plan, answers, true);
+  keep_near_zero(plan, mount,
+                 "The floor does not determine shifts along it and rotations about its normal: "
+                 "this block keeps the correction of the camera's frame small.");
+  return plan;
+}
+
+/// Plans what to free and compare.
+/// @throws InputError  if a link cannot be reached, or the target determines nothing of this robot
+[[nodiscard]] InitPlan plan_initial_config(const Robot& robot, const InitAnswers& answers) {
+  try {
+    InitPlan plan;
+    if (answers.target == InitTarget::tracker) return plan_tracker(robot, answers);
+    if (answers.target == InitTarget::ground) {
+      plan = plan_ground(robot, answers);
+    } else if (answers.target == InitTarget::world_checkerboard) {
+      plan = plan_world_checkerboard(robot, answers);
+    } else {
+      plan = plan_hand_eye(robot, answers);
+    }
+    if (answers.target == InitTarget::ground || answers.with_ground) {
+      add_ground(plan, answers);
+    }
+    return plan;
+  } catch (const RobotError& e) {
+    throw InputError(std::string("--base: ") + e.what());
+  }
+}
+
+// Checks the answers of `kinecal init` before planning.
+
+/// Checks the frames of several reflectors.
+void check_reflectors(const Robot& robot, const InitAnswers& answers, Diagnostics& diagnostics) {
+  std::vector<std::string> before = {answers.target_frame, answers.tracker_frame};
+  for (const std::string& frame : answers.more_reflectors) {
+    check_init_frame(robot, "--target-frame", frame, diagnostics);
+    if (std::find(before.begin(), before.end(), frame) != before.end()) {
+      diagnostics.error({"--target-frame", 0},
+                        "'" + frame + "' occurs twice; each reflector has a frame of its own");
+    }
+    before.push_back(frame);
+  }
+  if (!answers.more_reflectors.empty() && answers.target != InitTarget::tracker) {
+    diagnostics.error({"--target-frame", 0},
+                      "only a tracker has several reflectors; give one name");
+  }
+}
+
+/// Checks the answers before planning.
+/// @throws InputError  with all their errors
+void check_answers(const Robot& robot, const InitAnswers& answers) {
+  Diagnostics diagnostics;
+  const InitTarget target = answers.target;
+  check_init_link(robot, "--base", answers.base, diagnostics);
+  if (needs_arm(target)) check_init_link(robot, "--arm", answers.arm, diagnostics);
+  if (needs_camera(target)) {
+    check_init_link(robot, "--camera", answers.camera, diagnostics);
+    const std::array<std::string, 2> types = {"camera3d", "camera2d"};
+    if (std::find(types.begin(), types.end(), answers.camera_type) == types.end()) {
+      diagnostics.error({"--camera-type", 0},
+                        fmt::format("'{}' is neither camera3d nor camera2d{}", answers.camera_type,
+                                    did_you_mean(answers.camera_type, types)));
+    }
+    check_init_camera_name("--robot-camera-name", answers.camera_name, diagnostics);
+  }
+  if (needs_target_frame(target)) {
+    check_init_frame(robot, "--target-frame", answers.target_frame, diagnostics);
+    check_reflectors(robot, answers, diagnostics);
+  }
+  if (target == InitTarget::tracker) {
+    check_init_frame(robot, "--tracker-frame", answers.tracker_frame, diagnostics);
+    if (answers.target_frame == answers.tracker_frame) {
+      diagnostics.error({"--tracker-frame", 0},
+                        "'" + answers.tracker_frame +
+                            "' is the frame of the reflector too; give the tracker another one");
+    }
+  }
+  const bool floor = target == InitTarget::ground || answers.with_ground;
+  if (floor && target == InitTarget::tracker) {
+    diagnostics.error(
+        {"--target", 0},
+        "tracker and ground have no parameters in common; make a configuration for each");
+  } else if (floor && answers.camera_type == "camera2d") {
+    diagnostics.error({"--camera-type", 0}, "the floor is seen by depth cameras only: camera3d");
+  }
+  diagnostics.throw_if_errors();
+}
+
+}  // namespace
+}  // namespace detail
 
 void check_init_link(const Robot& robot, const std::string& option, const std::string& link,
                      Diagnostics& diagnostics) {

@@ -2,14 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/tools/init/proposed_columns.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <map>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/kinematics/chain.hpp"
-#include "kinecal/tools/init/proposed_joints.ipp"
-#include "kinecal/tools/init/proposed_points.ipp"
-#include "kinecal/tools/init/proposed_velocities.ipp"
 #include "kinecal/tools/init/robot_parts.hpp"
 #include "kinecal/tools/init/table_columns.ipp"
 
@@ -17,6 +22,380 @@ namespace kinecal {
 
 namespace detail {
 namespace {
+
+// The joints of an arm, all of which a table must have.
+
+/// Joints with their columns, by index.
+using ColumnOfJoint = std::vector<std::pair<std::string, int>>;
+
+/// The driven joints on the way to a link, from the base on.
+[[nodiscard]] std::vector<std::string> driven_joints(const Robot& robot, const std::string& link) {
+  std::vector<std::string> names;
+  for (const Joint* joint : joints_to_root(robot, link)) {
+    if (moves(joint->type) && !joint->mimic) names.insert(names.begin(), joint->name);
+  }
+  return names;
+}
+
+/// Checks that a joint between others of the same arm is not missing: its column has another name.
+/// @throws InputError  naming it
+void check_whole_arm(const Robot& robot, const ColumnOfJoint& found, const std::string& file) {
+  const auto is_found = [&](const std::string& joint) {
+    return std::any_of(found.begin(), found.end(),
+                       [&](const auto& of) { return of.first == joint; });
+  };
+  for (const std::string& arm : propose_arms(robot)) {
+    const std::vector<std::string> joints = driven_joints(robot, arm);
+    const auto here = std::count_if(joints.begin(), joints.end(), is_found);
+    if (2 * here < std::ssize(joints)) continue;  // another arm
+    const auto missing = std::find_if_not(joints.begin(), joints.end(), is_found);
+    if (missing == joints.end()) continue;
+    throw InputError(
+        fmt::format("{}: {} of the {} joints that move '{}' have a column, and '{}' has none; name "
+                    "its column like the joint, or say in "
+                    "columns.yaml what the columns mean: MANUAL, Samples from a table",
+                    file, here, joints.size(), arm, *missing));
+  }
+}
+
+// Which column of a table holds which joint.
+
+/// Whether words are the name of a joint, with or without words such as "position".
+[[nodiscard]] bool names_joint(std::vector<std::string> words, const Joint& joint) {
+  if (words_of(joint.name) == words) return true;
+  const auto is_rest = [](const std::string& word) {
+    return std::set<std::string>{"joint",     "joints", "state",  "states",   "position",
+                                 "positions", "pos",    "actual", "measured", "angle",
+                                 "q",         "j",      "axis",   "theta"}
+        .contains(word);
+  };
+  std::vector<std::string> name = words_of(joint.name);
+  std::erase(name, "joint");
+  if (name.empty()) return false;
+  std::erase(words, "joint");
+  const auto at = std::search(words.begin(), words.end(), name.begin(), name.end());
+  if (at == words.end()) return false;
+  words.erase(at, at + static_cast<std::ptrdiff_t>(name.size()));
+  return std::all_of(words.begin(), words.end(), is_rest);
+}
+
+/// Words of columns that are neither positions nor measured velocities.
+[[nodiscard]] bool is_other_quantity(const std::string& word) {
+  return std::set<std::string>{"effort",  "torque",       "current", "target",
+                               "command", "cmd",          "desired", "setpoint",
+                               "error",   "acceleration", "acc",     "temperature"}
+      .contains(word);
+}
+
+[[nodiscard]] bool is_velocity(const std::string& word) {
+  return std::set<std::string>{"velocity", "velocities", "vel", "speed", "dq", "qd", "qvel"}
+      .contains(word);
+}
+
+/// Columns named after joints of the URDF: "position.shoulder_pan_joint", "shoulder pan [deg]".
+[[nodiscard]] ColumnOfJoint joints_by_name(const Robot& robot, const ReadTable& table) {
+  ColumnOfJoint all;
+  for (const Joint& joint : robot.joints()) {
+    if (!moves(joint.type) || joint.mimic) continue;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      const TableColumn& column = table.columns[c];
+      if (!column.is_number || column.per_second) continue;
+      const auto is_other = [](const std::string& word) {
+        return is_other_quantity(word) || is_velocity(word);
+      };
+      if (std::any_of(column.words.begin(), column.words.end(), is_other)) continue;
+      if (!names_joint(column.words, joint)) continue;
+      all.emplace_back(joint.name, static_cast<int>(c));
+      break;
+    }
+  }
+  return all;
+}
+
+/// Columns of one of the names and a number, numbered from 0 or 1: name -> number -> column.
+/// @param is_usable  whether a column may be one of them
+[[nodiscard]] std::map<std::string, std::map<int, int>> numbered_columns(
+    const ReadTable& table, const std::set<std::string>& names,
+    bool (*is_usable)(const TableColumn&)) {
+  std::map<std::string, std::map<int, int>> numbered;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    std::vector<std::string> words = table.columns[c].words;
+    if (words.size() < 2 || words.back().size() > 2 || !is_usable(table.columns[c])) continue;
+    const auto number = csv_number(words.back());
+    words.pop_back();
+    const std::string name = fmt::format("{}", fmt::join(words, "_"));
+    if (number && names.contains(name))
+      numbered[name][static_cast<int>(*number)] = static_cast<int>(c);
+  }
+  std::erase_if(numbered, [](const auto& of) {  // 0 1 2 ... or 1 2 3 ...
+    const auto& [first, last] = std::pair(of.second.begin()->first, of.second.rbegin()->first);
+    return first > 1 || last - first + 1 != static_cast<int>(of.second.size());
+  });
+  return numbered;
+}
+
+/// Columns q1 q2 ..., of one name: in the order of the arm's joints.
+[[nodiscard]] ColumnOfJoint joints_by_number(const Robot& robot, const ReadTable& table,
+                                             const std::string& file) {
+  const std::set<std::string> names = {"q",
+                                       "j",
+                                       "joint",
+                                       "axis",
+                                       "a",
+                                       "theta",
+                                       "th",
+                                       "actual_q",
+                                       "pos",
+                                       "position",
+                                       "joint_position",
+                                       "joint_pos",
+                                       "joint_angle",
+                                       "positions",
+                                       "joint_positions",
+                                       "qpos",
+                                       "angle",
+                                       "ax"};
+  const auto numbered = numbered_columns(table, names, [](const TableColumn& column) {
+    return column.is_number && !column.per_second;
+  });
+  if (numbered.size() > 1) {
+    throw InputError(
+        fmt::format("{}: both '{}' and '{}' may be joints; say in columns.yaml which are: MANUAL, "
+                    "Samples from a table",
+                    file, numbered.begin()->first, numbered.rbegin()->first));
+  }
+  std::vector<int> columns;
+  if (!numbered.empty()) {
+    for (const auto& [number, column] : numbered.begin()->second) columns.push_back(column);
+  }
+  if (columns.empty()) return {};
+  std::vector<std::vector<std::string>> fitting;
+  for (const std::string& arm : propose_arms(robot)) {
+    std::vector<std::string> joints = driven_joints(robot, arm);
+    if (joints.size() == columns.size() &&
+        std::find(fitting.begin(), fitting.end(), joints) == fitting.end()) {
+      fitting.push_back(std::move(joints));
+    }
+  }
+  if (fitting.size() != 1) {
+    throw InputError(
+        fmt::format("{}: has {} columns {}1 ..., and {} of the URDF has as many joints; say in "
+                    "columns.yaml which "
+                    "joint each column holds: MANUAL, Samples from a table",
+                    file, columns.size(), numbered.begin()->first,
+                    fitting.empty() ? "no arm" : "more than one arm"));
+  }
+  ColumnOfJoint all;
+  for (std::size_t i = 0; i < columns.size(); ++i) all.emplace_back(fitting.front()[i], columns[i]);
+  return all;
+}
+
+/// A table without a header: the joints of the only arm, then x, y, z.
+[[nodiscard]] ColumnOfJoint joints_by_count(const Robot& robot, const ReadTable& table,
+                                            const std::string& file) {
+  std::set<std::vector<std::string>> fitting;
+  for (const std::string& arm : propose_arms(robot)) {
+    const std::vector<std::string> joints = driven_joints(robot, arm);
+    if (joints.size() + 3 == table.columns.size()) fitting.insert(joints);
+  }
+  if (fitting.size() != 1) {
+    throw InputError(fmt::format(
+        "{}: its first row has no names, and its {} columns are not the joints of {} arm and x, y, "
+        "z; "
+        "give it a header, or say in columns.yaml what the columns mean: MANUAL, Samples from a "
+        "table",
+        file, table.columns.size(), fitting.empty() ? "an" : "only one"));
+  }
+  ColumnOfJoint all;
+  for (const std::string& joint : *fitting.begin()) {
+    const int column = static_cast<int>(all.size());
+    all.emplace_back(joint, column);
+  }
+  return all;
+}
+
+/// @throws InputError  if columns do not tell the joints
+[[nodiscard]] ColumnOfJoint proposed_joints(const Robot& robot, const ReadTable& table,
+                                            const std::string& file) {
+  if (!table.header) return joints_by_count(robot, table, file);
+  ColumnOfJoint joints = joints_by_name(robot, table);
+  if (!joints.empty()) check_whole_arm(robot, joints, file);
+  if (joints.empty()) joints = joints_by_number(robot, table, file);
+  if (joints.empty()) {
+    std::string driven;
+    for (const Joint& joint : robot.joints()) {
+      if (moves(joint.type) && !joint.mimic) driven += (driven.empty() ? "" : ", ") + joint.name;
+    }
+    throw InputError(
+        fmt::format("{}: no column has the name of a joint ({}), nor are there q1, q2, ... of an "
+                    "arm; say in columns.yaml "
+                    "what its columns mean: MANUAL, Samples from a table",
+                    file, driven));
+  }
+  return joints;
+}
+
+// Which columns of a table are a measured point.
+
+/// Three columns that are a point: indices of x, y and z.
+struct PointColumns {
+  std::string rest;  ///< of their names
+  std::array<int, 3> xyz = {-1, -1, -1};
+  std::array<int, 3> deviation = {-1, -1, -1};  ///< to add
+};
+
+[[nodiscard]] bool has_word(const TableColumn& column, const std::set<std::string>& words) {
+  return std::any_of(column.words.begin(), column.words.end(),
+                     [&](const std::string& word) { return words.contains(word); });
+}
+
+/// Complete triples of columns x, y, z that are not taken, in their order; not those of rotations.
+[[nodiscard]] std::vector<PointColumns> triples(const ReadTable& table,
+                                                const std::set<int>& taken) {
+  std::vector<PointColumns> all;
+  for (int c = 0; c < static_cast<int>(table.columns.size()); ++c) {
+    const TableColumn& column = table.columns[static_cast<std::size_t>(c)];
+    if (taken.contains(c) || !column.is_number) continue;
+    std::vector<std::string> words = column.words;
+    const auto axis = std::find_if(words.rbegin(), words.rend(), [](const std::string& word) {
+      return !word.empty() && word.find_first_not_of("0123456789") == 0 &&
+             std::string_view("xyz").find(word.back()) != std::string_view::npos &&
+             (word.size() == 1 || word.size() == 2);
+    });
+    if (axis == words.rend()) continue;
+    const auto which = std::string_view("xyz").find(axis->back());
+    axis->pop_back();  // "dx" is the x of d
+    const std::string rest = fmt::format("{}", fmt::join(words, " "));
+    auto triple = std::find_if(all.begin(), all.end(),
+                               [&](const PointColumns& known) { return known.rest == rest; });
+    if (triple == all.end()) triple = all.insert(all.end(), {rest});
+    triple->xyz[which] = c;
+  }
+  std::erase_if(all, [&](const PointColumns& triple) {
+    const bool whole =
+        std::all_of(triple.xyz.begin(), triple.xyz.end(), [](int c) { return c >= 0; });
+    const std::vector<std::string> words = words_of(triple.rest);
+    return !whole || std::any_of(words.begin(), words.end(), [](const std::string& word) {
+      return std::set<std::string>{"r", "rot", "q", "w",        "quat",  "orientation", "n",
+                                   "v", "f",   "t", "velocity", "force", "torque",      "accel"}
+          .contains(word);
+    });
+  });
+  return all;
+}
+
+/// The measured points of a row; deviations are added to them.
+/// @throws InputError  if columns do not tell them
+[[nodiscard]] std::vector<PointColumns> measured_points(const ReadTable& table,
+                                                        const std::set<int>& taken,
+                                                        const std::string& file) {
+  const std::set<std::string> deviations = {"d",   "dif",       "diff", "delta",
+                                            "dev", "deviation", "err",  "error"},
+                              computed = {"tcp",       "tool",    "flange",  "fk",  "ee",
+                                          "base",      "robot",   "nominal", "cmd", "command",
+                                          "commanded", "desired", "actual"};
+  std::vector<PointColumns> points = triples(table, taken), added;
+  const auto is = [&](const PointColumns& point, const std::set<std::string>& words) {
+    return has_word({.name = "", .words = words_of(point.rest)}, words);
+  };
+  for (const PointColumns& point : points) {
+    if (is(point, deviations)) added.push_back(point);
+  }
+  std::erase_if(points, [&](const PointColumns& point) { return is(point, deviations); });
+  if (points.size() > 1) {
+    std::erase_if(points, [&](const PointColumns& point) { return is(point, computed); });
+  }
+  if (points.empty()) {
+    throw InputError(
+        file +
+        ": no three columns are called x, y, z (of a tracker's point); say in columns.yaml "
+        "what its columns mean: MANUAL, Samples from a table");
+  }
+  // Several: numbered points of one name.
+  const auto name = [](const PointColumns& point) {
+    std::vector<std::string> words = words_of(point.rest);
+    std::erase_if(words, [](const std::string& word) {
+      return word.find_first_not_of("0123456789") == std::string::npos;
+    });
+    return fmt::format("{}", fmt::join(words, " "));
+  };
+  for (const PointColumns& point : points) {
+    if (name(point) == name(points.front())) continue;
+    const auto of = [&](const PointColumns& p) {
+      return table.columns[static_cast<std::size_t>(p.xyz[0])].name;
+    };
+    throw InputError(
+        fmt::format("{}: both '{}' and '{}' may begin the point that was measured; say in "
+                    "columns.yaml which it "
+                    "is: MANUAL, Samples from a table",
+                    file, of(points.front()), of(point)));
+  }
+  if (points.size() == 1 && added.size() == 1) points.front().deviation = added.front().xyz;
+  return points;
+}
+
+/// The same of a table without a header: the three columns after the joints.
+[[nodiscard]] PointColumns last_three(const ReadTable& table) {
+  const int n = static_cast<int>(table.columns.size());
+  return {"", {n - 3, n - 2, n - 1}};
+}
+
+// Which column of a table holds the velocity of which joint.
+
+/// Columns such as "shoulder_pan_velocity", "elbow_vel" or "elbow [deg/s]".
+[[nodiscard]] ColumnOfJoint velocities_by_name(const Robot& robot, const ReadTable& table,
+                                               const ColumnOfJoint& joints) {
+  ColumnOfJoint all;
+  for (const auto& [joint, position] : joints) {
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      const TableColumn& column = table.columns[c];
+      std::vector<std::string> words = column.words;
+      const bool says_velocity = std::erase_if(words, is_velocity) > 0 || column.per_second;
+      if (!says_velocity || !column.is_complete || static_cast<int>(c) == position) continue;
+      if (std::any_of(words.begin(), words.end(), is_other_quantity)) continue;
+      if (!names_joint(words, robot.joint(joint))) continue;
+      all.emplace_back(joint, static_cast<int>(c));
+      break;
+    }
+  }
+  return all;
+}
+
+/// Columns dq1 dq2 ..., of one name, where the positions are q1 q2 ... too: in the same order.
+[[nodiscard]] ColumnOfJoint velocities_by_number(const Robot& robot, const ReadTable& table,
+                                                 const ColumnOfJoint& joints) {
+  if (!joints_by_name(robot, table).empty()) return {};
+  const std::set<std::string> names = {"dq",
+                                       "qd",
+                                       "actual_qd",
+                                       "actual_dq",
+                                       "vel",
+                                       "velocity",
+                                       "joint_velocity",
+                                       "joint_vel",
+                                       "velocities",
+                                       "joint_velocities",
+                                       "qvel",
+                                       "speed"};
+  const auto numbered =
+      numbered_columns(table, names, [](const TableColumn& column) { return column.is_complete; });
+  if (numbered.size() != 1 || numbered.begin()->second.size() != joints.size()) return {};
+  ColumnOfJoint all;
+  for (const auto& [number, column] : numbered.begin()->second) {
+    all.emplace_back(joints[all.size()].first, column);
+  }
+  return all;
+}
+
+/// The velocities of all joints; empty if one is missing, or not in every row.
+/// @param joints  the columns of their positions
+[[nodiscard]] ColumnOfJoint proposed_velocities(const Robot& robot, const ReadTable& table,
+                                                const ColumnOfJoint& joints) {
+  if (!table.header) return {};
+  ColumnOfJoint all = velocities_by_name(robot, table, joints);
+  if (all.empty()) all = velocities_by_number(robot, table, joints);
+  return all.size() == joints.size() ? all : ColumnOfJoint{};
+}
 
 /// A column as columns.yaml names it: by its number, if its name does not tell it from others.
 [[nodiscard]] std::string column_name(const ReadTable& table, int c) {

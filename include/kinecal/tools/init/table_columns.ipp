@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/files/csv/csv_columns.ipp"
+#include "kinecal/files/csv/csv_columns.hpp"
 #include "kinecal/files/csv/csv_table.hpp"
 
 namespace kinecal::detail {

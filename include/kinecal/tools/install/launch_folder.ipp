@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/files/results/staging.ipp"
+#include "kinecal/files/results/staging.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/text/nearest_name.hpp"
 

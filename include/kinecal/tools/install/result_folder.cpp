@@ -14,7 +14,7 @@
 #include "kinecal/files/json/json_value.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
-#include "kinecal/files/yaml/config_scalar.ipp"
+#include "kinecal/files/yaml/config_scalar.hpp"
 #include "kinecal/files/yaml/yaml_node.hpp"
 #include "kinecal/tools/install/dates.ipp"
 

@@ -16,7 +16,7 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/report/recorded_poses.hpp"
-#include "kinecal/trust/drift.hpp"
+#include "kinecal/trust/verify/drift.hpp"
 
 namespace kinecal {
 

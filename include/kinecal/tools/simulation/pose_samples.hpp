@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/capture/capture_pose.hpp"
+#include "kinecal/capture/session/capture_pose.hpp"
 #include "kinecal/config/config.hpp"
 #include "kinecal/tools/simulation/simulation_plan.hpp"
 

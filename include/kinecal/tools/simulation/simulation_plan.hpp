@@ -9,7 +9,7 @@
 //
 // Defaults follow from the URDF: the camera and the arm that `kinecal init` proposes, and a target
 // at the arm's end, or beside the robot if the arm carries the camera.  The errors are in the
-// parameters that a first configuration calibrates.  `read_scene.ipp` lists all keys.
+// parameters that a first configuration calibrates.  `simulation_plan.cpp` lists all keys.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/capture/pose_generation.hpp"
+#include "kinecal/capture/session/pose_generation.hpp"
 #include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/study/error_sizes.hpp"

@@ -6,29 +6,310 @@
 #include "kinecal/files/bags/ros1/read_bag.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <fstream>
+#include <functional>
 #include <istream>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "kinecal/files/bags/bag.hpp"
 #include "kinecal/files/bags/byte_file.ipp"
+#include "kinecal/files/bags/bytes.hpp"
 #include "kinecal/files/bags/codec/block_unpacker.ipp"
 #include "kinecal/files/bags/codec/compression.hpp"
-#include "kinecal/files/bags/ros1/index.ipp"
-#include "kinecal/files/bags/ros1/messages.ipp"
+#include "kinecal/files/bags/kept_bytes.ipp"
 #include "kinecal/files/bags/ros1/records.ipp"
+#include "kinecal/files/diagnostics.hpp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
+
+// The connections of a ROS 1 bag: the topic of each message, and whether it is wanted.
+//
+// Each publisher of a topic has its own connection; those with the same content form one topic.
+
+/// Wraps an exception of a user's function, so that it passes the handlers for errors of a bag.
+struct PassedOn {
+  std::exception_ptr thrown;
+};
+
+template <class F>
+auto pass_on(const F& users) {
+  try {
+    return users();
+  } catch (...) {
+    throw PassedOn{std::current_exception()};
+  }
+}
+
+class Ros1Topics {
+ public:
+  /// @param wants  called once per topic
+  explicit Ros1Topics(const std::function<bool(const BagTopic&)>& wants) : wants_(wants) {}
+
+  /// Adds a connection record.  It occurs in its chunk and in the index; the first one counts.
+  /// @throws BytesError  if it is not a connection, or its number is taken
+  /// @throws PassedOn    if the user's function throws
+  void add(const Ros1Fields& header, Bytes data, std::uint64_t data_place) {
+    const auto number = header.number<std::uint32_t>("conn");
+    const Ros1Fields content(data, data_place);
+    BagTopic topic;
+    if (data.size() > KeptBytes::kMost) kept_.add(data.size());
+    topic.name = plain_topic(header.text("topic"));
+    topic.type = content.text("type");
+    topic.definition = optional_text(content, "message_definition");
+    topic.md5 = optional_text(content, "md5sum");
+    const std::string key = key_of(topic);
+    const Asked*& known = connections_[number];
+    if (known == nullptr) {
+      kept_.add(0);
+      known = find_or_ask(key, std::move(topic));
+    } else if (const auto found = topics_.find(key);
+               found == topics_.end() || &found->second != known) {
+      ByteReader(data, std::endian::little, data_place)
+          .fail("connection " + std::to_string(number) +
+                " stands in the bag twice, with different content");
+    }
+  }
+
+  /// @return  the topic of a message; nullptr if it is not wanted
+  /// @throws BytesError  if there is no such connection; once per number
+  [[nodiscard]] const BagTopic* wanted(const Ros1Fields& message) {
+    const auto number = message.number<std::uint32_t>("conn");
+    const auto [known, is_new] = connections_.try_emplace(number, nullptr);
+    if (is_new) {
+      throw BytesError("a message is of connection " + std::to_string(number) +
+                       ", which the bag does not define; messages of it are left out");
+    }
+    return known->second != nullptr && known->second->wanted ? &known->second->topic : nullptr;
+  }
+
+  /// True if the messages of a connection must be read; also if it is unknown, which is then an
+  /// error.
+  [[nodiscard]] bool may_be_wanted(std::uint32_t number) const {
+    const auto known = connections_.find(number);
+    return known == connections_.end() || (known->second != nullptr && known->second->wanted);
+  }
+
+ private:
+  struct Asked {
+    BagTopic topic;
+    bool wanted = false;
+  };
+
+  [[nodiscard]] static std::string optional_text(const Ros1Fields& fields, std::string_view name) {
+    return fields.find(name) ? std::string(fields.text(name)) : "";
+  }
+
+  /// Equal for equal topics, and only for those.
+  [[nodiscard]] static std::string key_of(const BagTopic& topic) {
+    std::string key;
+    for (const std::string* part : {&topic.name, &topic.type, &topic.md5}) {
+      key += std::to_string(part->size()) + ' ' + *part;
+    }
+    return key + topic.definition;
+  }
+
+  [[nodiscard]] const Asked* find_or_ask(const std::string& key, BagTopic topic) {
+    if (!topics_.contains(key)) kept_.add(2 * key.size());
+    const auto [at, is_new] = topics_.try_emplace(key);
+    if (is_new) {
+      Asked& asked = at->second;
+      asked.topic = std::move(topic);
+      asked.wanted = pass_on([&] { return wants_(asked.topic); });
+    }
+    return &at->second;
+  }
+
+  const std::function<bool(const BagTopic&)>& wants_;
+  KeptBytes kept_;
+  std::unordered_map<std::string, Asked> topics_;  ///< addresses are stable while others are added
+  std::unordered_map<std::uint32_t, const Asked*> connections_;  ///< nullptr: unknown, and reported
+};
+
+// The index of a ROS 1 bag: the chunks that hold messages of each connection.
+//
+// It is at the end of the file and written last, so an interrupted recording has no index.
+
+/// What the bag header, the first record, says about the index.
+struct Ros1BagHeader {
+  std::uint64_t index_place = 0;  ///< 0: the index has not been written
+  std::uint32_t connections = 0, chunks = 0;
+};
+
+/// @throws BytesError  if the record is not a bag header, or the bag is encrypted
+[[nodiscard]] Ros1BagHeader read_ros1_bag_header(ByteFile& file) {
+  std::vector<std::byte> bytes;
+  const Ros1Head head = read_ros1_head(file, bytes);
+  if (head.fields.op() != Ros1Op::bag) {
+    throw BytesError(at_byte(head.place) + "the bag header is missing");
+  }
+  const auto encryptor = head.fields.find("encryptor");
+  if (encryptor && !encryptor->empty()) {
+    throw BytesError("the bag is encrypted; record it without encryption");
+  }
+  Ros1BagHeader header;
+  header.index_place = head.fields.number<std::uint64_t>("index_pos");
+  header.connections = head.fields.number<std::uint32_t>("conn_count");
+  header.chunks = head.fields.number<std::uint32_t>("chunk_count");
+  skip_ros1_data(file, head);
+  return header;
+}
+
+/// The connections of each chunk, by its place in the file.
+using Ros1ChunkInfos = std::map<std::uint64_t, std::vector<std::uint32_t>>;
+
+/// @throws BytesError  if the record is not a chunk info
+void add_ros1_chunk_info(const Ros1Fields& header, Bytes data, std::uint64_t data_place,
+                         Ros1ChunkInfos& chunks) {
+  ByteReader reader(data, std::endian::little, data_place);
+  if (header.number<std::uint32_t>("ver") != 1) reader.fail("a chunk info has an unknown version");
+  std::vector<std::uint32_t>& connections = chunks[header.number<std::uint64_t>("chunk_pos")];
+  const auto count = header.number<std::uint32_t>("count");
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto connection = reader.number<std::uint32_t>();
+    if (reader.number<std::uint32_t>() > 0) connections.push_back(connection);
+  }
+}
+
+/// Reads the whole index.
+/// @return  empty if the index is complete; otherwise the error, and `chunks` is empty
+[[nodiscard]] std::string read_ros1_index(ByteFile& file, const Ros1BagHeader& header,
+                                          Ros1Topics& topics, Ros1ChunkInfos& chunks) {
+  std::uint64_t connections = 0, infos = 0;
+  std::vector<std::byte> header_bytes, data;
+  try {
+    if (header.index_place < file.place() || header.index_place > file.size()) {
+      throw BytesError("it should begin at byte " + std::to_string(header.index_place) +
+                       ", which is not in the file");
+    }
+    file.go_to(header.index_place);
+    while (file.left() > 0) {
+      const Ros1Head head = read_ros1_head(file, header_bytes);
+      const Ros1Op op = head.fields.op();
+      if (op == Ros1Op::connection) {
+        topics.add(head.fields, read_ros1_data(file, head, data), head.data_place);
+        ++connections;
+      } else if (op == Ros1Op::chunk_info) {
+        add_ros1_chunk_info(head.fields, read_ros1_data(file, head, data), head.data_place, chunks);
+        ++infos;
+      } else {
+        throw BytesError(at_byte(head.place) + "a record that does not belong to an index");
+      }
+    }
+    if (connections != header.connections || infos != header.chunks) {
+      throw BytesError("it has " + std::to_string(connections) + " of " +
+                       std::to_string(header.connections) + " connections and " +
+                       std::to_string(infos) + " of " + std::to_string(header.chunks) + " chunks");
+    }
+  } catch (const BytesError& e) {
+    chunks.clear();
+    return e.what();
+  }
+  return "";
+}
+
+// Passes on the wanted messages of a ROS 1 bag, and reports errors.
+
+class Ros1Messages {
+ public:
+  /// @param name  of the bag, for messages
+  Ros1Messages(std::string name, const BagReader& reader, Diagnostics& diagnostics)
+      : name_(std::move(name)), reader_(reader), diagnostics_(diagnostics), topics_(reader.wants) {}
+
+  [[nodiscard]] Ros1Topics& topics() { return topics_; }
+  [[nodiscard]] const Ros1Topics& topics() const { return topics_; }
+  [[nodiscard]] std::uint64_t count() const { return count_; }  ///< handled so far
+  [[nodiscard]] bool too_many_errors() const { return errors_ > kMostErrors; }
+
+  /// The data of a chunk: connections and messages, one after another.
+  struct Records {
+    Bytes bytes;
+    std::uint64_t place;   ///< of the first byte, for messages
+    std::string where;     ///< beginning of messages
+    bool is_whole = true;  ///< false if the file ends in it; reported elsewhere
+  };
+
+  void records(const Records& all) {
+    ByteReader reader(all.bytes, std::endian::little, all.place);
+    try {
+      while (!reader.at_end() && !too_many_errors()) {
+        const Ros1Record record = next_ros1_record(reader);
+        const Ros1Op op = record.fields.op();
+        if (op == Ros1Op::connection) {
+          connection(record, all.where);
+        } else if (op == Ros1Op::message) {
+          if (const BagTopic* topic = wanted(record.fields, all.where)) {
+            handle(*topic, ros1_time(record.fields, "time"), record.data);
+          }
+        } else {
+          error(all.where + at_byte(record.data_place) +
+                "the data of a record of unknown kind; it is left out");
+        }
+      }
+    } catch (const BytesError& e) {
+      if (all.is_whole) error(all.where + e.what() + "; the rest of the chunk is lost");
+    }
+  }
+
+  void connection(const Ros1Record& record, const std::string& where) {
+    try {
+      topics_.add(record.fields, record.data, record.data_place);
+    } catch (const BytesError& e) {
+      error(where + e.what());
+    }
+  }
+
+  /// @return  its topic; nullptr if the message is not wanted
+  [[nodiscard]] const BagTopic* wanted(const Ros1Fields& message, const std::string& where) {
+    try {
+      return topics_.wanted(message);
+    } catch (const BytesError& e) {
+      error(where + e.what());
+    }
+    return nullptr;
+  }
+
+  /// @throws PassedOn  if the user's function throws
+  void handle(const BagTopic& topic, std::int64_t time, Bytes data) {
+    ++count_;
+    pass_on([&] { reader_.handle({topic, time, data}); });
+  }
+
+  void error(const std::string& what) {
+    if (errors_ < kMostErrors) {
+      diagnostics_.error({name_, 0}, what);
+    } else if (errors_ == kMostErrors) {
+      diagnostics_.error({name_, 0}, "more than " + std::to_string(kMostErrors) +
+                                         " errors; the rest of the bag is not read");
+    }
+    ++errors_;
+  }
+
+  void warning(const std::string& what) { diagnostics_.warning({name_, 0}, what); }
+
+ private:
+  static constexpr std::size_t kMostErrors = 20;  ///< further ones usually repeat the same error
+
+  std::string name_;
+  const BagReader& reader_;
+  Diagnostics& diagnostics_;
+  Ros1Topics topics_;
+  std::uint64_t count_ = 0;
+  std::size_t errors_ = 0;
+};
 
 class Ros1BagReading {
  public:

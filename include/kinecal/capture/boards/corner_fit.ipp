@@ -1,0 +1,141 @@
+// Fits a homography and a lens to the corners of a view, for board_fit.cpp and disc_centres.cpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "kinecal/capture/boards/homography.hpp"
+#include "kinecal/geometry/median.hpp"
+#include "kinecal/sensors/lens.hpp"
+
+namespace kinecal::detail {
+
+inline constexpr double kSharpCorner = 0.15;  // what a good finder achieves, pixels
+inline constexpr std::size_t kFewest = 8, kForLens = 12, kForSquare = 24, kForCube = 40;  // corners
+
+/// Maps pixels to those of a camera without distortion, and back.
+struct Straightening {
+  std::function<Eigen::Vector2d(const Eigen::Vector2d&)> straight, bent;
+};
+
+/// A fit: H, and the distance of each corner.
+struct CornerFit {
+  std::vector<Eigen::Vector2d> misses;  ///< seen minus predicted, pixels
+  std::vector<double> weights;          ///< from 0 to 1
+  double typical = std::numeric_limits<double>::infinity();
+};
+
+/// Distances, their median, and weights of the next pass.
+inline void weigh(CornerFit& fit) {
+  std::vector<double> off;
+  for (const Eigen::Vector2d& miss : fit.misses) {
+    off.push_back(miss.allFinite() ? miss.norm() : std::numeric_limits<double>::infinity());
+  }
+  fit.typical = off.empty() ? 0.0 : median_of(off);
+  const double reach = 3.0 * std::max(kSharpCorner, fit.typical);
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    const double ratio = off[i] / reach;
+    fit.weights[i] = std::isfinite(ratio) ? 1.0 / std::pow(1.0 + ratio * ratio, 2) : 0.0;
+  }
+}
+
+/// The corners of a view: on the target and in the image.
+struct PlaneView {
+  std::vector<Eigen::Vector2d> plane, pixels;
+
+  [[nodiscard]] CornerFit fit(const Straightening& lens) const {
+    constexpr int kPasses = 12;
+    CornerFit best;
+    best.misses.resize(plane.size());
+    best.weights.assign(plane.size(), 1.0);
+    std::vector<Eigen::Vector2d> straight;
+    for (const Eigen::Vector2d& pixel : pixels) straight.push_back(lens.straight(pixel));
+    for (int pass = 0; pass < kPasses; ++pass) {
+      const auto h = homography(plane, straight, best.weights);
+      if (!h) break;
+      for (std::size_t i = 0; i < plane.size(); ++i) {
+        best.misses[i] = pixels[i] - lens.bent(mapped(*h, plane[i]));
+      }
+      weigh(best);
+    }
+    return best;
+  }
+};
+
+/// r_u = r / (1 + k r^2), with 1 + k r^2 = share at the radius of the farthest corner.
+[[nodiscard]] inline Straightening division_lens(const Eigen::Vector2d& centre, double radius,
+                                                 double share) {
+  const double k = (share - 1.0) / (radius * radius);
+  const auto straight = [=](const Eigen::Vector2d& pixel) -> Eigen::Vector2d {
+    const Eigen::Vector2d from = pixel - centre;
+    return centre + from / (1.0 + k * from.squaredNorm());
+  };
+  const auto bent = [=](const Eigen::Vector2d& pixel) -> Eigen::Vector2d {
+    const Eigen::Vector2d from = pixel - centre;
+    const double root = 1.0 - 4.0 * k * from.squaredNorm();  // of k r_u r^2 - r + r_u = 0
+    return centre + 2.0 / (1.0 + std::sqrt(std::max(0.0, root))) * from;
+  };
+  return {straight, bent};
+}
+
+[[nodiscard]] inline Straightening no_lens() {
+  const auto same = [](const Eigen::Vector2d& pixel) { return pixel; };
+  return {same, same};
+}
+
+/// The lens of camera_info; nullopt if it has none, or one that kinecal does not know.  Its pinhole looks at
+/// the view: so a view far from the axis of a fisheye is straight, too.
+[[nodiscard]] inline std::optional<Straightening> known_lens(const CameraInfo& info,
+                                                             const PlaneView& view) {
+  if (!is_raw(info, ImageKind::automatic)) return std::nullopt;
+  try {
+    const Lens lens(info, ImageKind::raw);
+    const double focal = lens.focal_length();
+    std::vector<Vector3<double>> seen;
+    for (const Eigen::Vector2d& pixel : view.pixels) {
+      const Vector3<double> ray = lens.ray(pixel.x(), pixel.y());
+      if (ray.allFinite()) seen.push_back(ray);
+    }
+    const Matrix3<double> turn = turn_to_axis(seen);
+    return Straightening{[=](const Eigen::Vector2d& pixel) -> Eigen::Vector2d {
+                           return focal * (turn * lens.ray(pixel.x(), pixel.y())).hnormalized();
+                         },
+                         [=](const Eigen::Vector2d& p) {
+                           return lens.project(turn.transpose() * (p / focal).homogeneous());
+                         }};
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
+
+/// The fit with the best k about the centre of the image.
+[[nodiscard]] inline CornerFit best_division(const PlaneView& view, const CameraInfo& camera) {
+  const Eigen::Vector2d centre(0.5 * camera.width, 0.5 * camera.height);
+  double radius = 1.0;
+  for (const Eigen::Vector2d& p : view.pixels) radius = std::max(radius, (p - centre).norm());
+  constexpr double kLeast = 0.25, kMost = 1.6;
+  double best_share = 1.0, step = 0.09;
+  CornerFit best;
+  const auto attempt = [&](double share) {
+    CornerFit fit = view.fit(division_lens(centre, radius, share));
+    if (!(fit.typical < best.typical)) return;
+    best = std::move(fit);
+    best_share = share;
+  };
+  for (double share = kLeast; share <= kMost; share += step) attempt(share);
+  for (; step > 0.002; step /= 3.0) {
+    const double from = best_share;
+    for (const int side : {-2, -1, 1, 2}) attempt(from + side * step / 3.0);
+  }
+  return best;
+}
+
+}  // namespace kinecal::detail

@@ -1,0 +1,66 @@
+// Finding the frames that a problem compares.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/uncertainty/compared_frames.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/text/frame_name.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Where the features of a sensor are: its link, or a virtual frame beyond it.
+[[nodiscard]] FrameOnRobot frame_of_features(const AnyProblem& problem, int sensor,
+                                             std::span<const Sample> samples) {
+  const MountedSensor& mounted = problem.sensors()[static_cast<std::size_t>(sensor)];
+  FrameOnRobot frame{mounted.mount().frame};
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(mounted.mount().name);
+    if (seen == nullptr || seen->features.empty()) continue;
+    const std::string* name = frame_among(problem.frames(), seen->features.front().frame);
+    const bool is_virtual = name != nullptr && !problem.robot().has_joint(*name);
+    if (is_virtual && !mounted.sensor().in_own_frame()) frame.frame = *name;
+    break;
+  }
+  return frame;
+}
+
+/// True if a sensor is at a pose that each sample has of its own: where it is says nothing of the robot.
+[[nodiscard]] bool has_own_pose(const AnyProblem& problem, const std::vector<int>& sensors) {
+  const std::vector<std::string>& own = problem.own_poses();
+  return std::any_of(sensors.begin(), sensors.end(), [&](int s) {
+    const auto& joints =
+        problem.sensors()[static_cast<std::size_t>(s)].chains().front().chain().joints;
+    return std::any_of(joints.begin(), joints.end(), [&](const ChainJoint& joint) {
+      return std::find(own.begin(), own.end(), joint.floating) != own.end();
+    });
+  });
+}
+
+}  // namespace
+}  // namespace detail
+
+std::optional<std::pair<FrameOnRobot, FrameOnRobot>> compared_frames(
+    const AnyProblem& problem, std::span<const Sample> samples) {
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const std::vector<int>& sensors = problem.term(t).sensors;
+    if (problem.samples_of(t) == 0) continue;
+    FrameOnRobot one = detail::frame_of_features(problem, sensors[0], samples),
+                 other{problem.base()};
+    if (sensors.size() > 1) {
+      other = detail::frame_of_features(problem, sensors[1], samples);
+      const auto& first = problem.sensors()[static_cast<std::size_t>(sensors[0])];
+      if (first.sensor().in_own_frame()) std::swap(one, other);
+    }
+    const bool is_own = detail::has_own_pose(problem, sensors);
+    if (one.name() != other.name() && !is_own) return std::pair(one, other);
+  }
+  return std::nullopt;
+}
+
+}  // namespace kinecal
