@@ -274,8 +274,9 @@ inline constexpr int kResiduals =
 /// A block whose residuals are a translation and a rotation, each times its scale: they are judged as a distance and an
 /// angle.
 template <class B>
-concept ScaledPoseBlock = ErrorBlock<B> && kResiduals<B>
-== 6 && requires(const B& block) {
+concept ScaledPoseBlock = ErrorBlock<B> && requires(const B& block) {
+  requires kResiduals<B>
+  == 6;
   { block.translation_scale } -> std::convertible_to<double>;  // 1 / metre
   { block.rotation_scale } -> std::convertible_to<double>;     // 1 / radian
 };
