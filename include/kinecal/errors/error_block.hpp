@@ -271,12 +271,17 @@ template <ErrorBlock B>
 inline constexpr int kResiduals =
     detail::ResultFor<B, typename detail::InputsOf<B>::type>::type::RowsAtCompileTime;
 
+namespace detail {
+/// A translation and a rotation.
+template <class B>
+inline constexpr bool kIsPoseDifference = kResiduals<B> == 6;
+}  // namespace detail
+
 /// A block whose residuals are a translation and a rotation, each times its scale: they are judged as a distance and an
 /// angle.
 template <class B>
-concept ScaledPoseBlock = ErrorBlock<B> && requires(const B& block) {
-  requires kResiduals<B>
-  == 6;
+concept ScaledPoseBlock = ErrorBlock<B> && detail::kIsPoseDifference<B> &&
+    requires(const B& block) {
   { block.translation_scale } -> std::convertible_to<double>;  // 1 / metre
   { block.rotation_scale } -> std::convertible_to<double>;     // 1 / radian
 };
