@@ -103,7 +103,7 @@ struct FreeLength {
   constexpr double kStep = 0.005;
   const auto scaled = refits.with(with_scaled(refits, suspect, 1.0 + kStep));
   if (!scaled) return std::nullopt;
-  constexpr double kBuilt = 1.5e-3, kWide = 3.0;  // metres; deviations
+  constexpr double kBuilt = 1.5e-3, kWide = 2.5;  // metres; deviations
   double before = 0.0, slope = 0.0, curvature = 0.0, least_moved = 0.0;
   std::vector<double> moves;
   for (const FreeLength& length : lengths) {
