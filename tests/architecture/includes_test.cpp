@@ -141,7 +141,8 @@ TEST(Architecture, APieceWithOneIncluderIsInIt) {
   std::set<std::string> pieces;
   for (const auto& [piece, sources] : includers) {
     const bool defines = fs::exists((kHeaders / piece).replace_extension(".hpp"));
-    if (!defines && sources.size() == 1) pieces.insert(piece);
+    if (fs::exists(kHeaders / piece) && !defines && sources.size() == 1)
+      pieces.insert(piece);  // not made by CMake
   }
   EXPECT_EQ(pieces, exceptions);
 }
