@@ -1,4 +1,4 @@
-// Residuals of samples with changing measurements, for exact_samples.cpp and sample_designs.ipp.
+// Residuals of samples with changing measurements, for exact_samples.cpp and sample_design.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
