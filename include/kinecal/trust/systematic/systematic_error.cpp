@@ -117,11 +117,13 @@ class ErrorSearch {
               const std::vector<BlockNoise>& noise, const CommonNoise& common)
       : fitted_(fitted),
         poses_(poses),
+        effects_(effects),
+        noise_(noise),
+        common_(common),
         freedom_(freedom_of(fitted.fit, poses)),
         inverse_(Spectrum(information(fitted.fit, fitted.fit.loss)).pseudo_inverse()),
         joints_(fitted, effects, inverse_),
-        changes_(fitted, inverse_),
-        draws_(fitted.fit, poses, effects, noise, common, inverse_) {
+        changes_(fitted, inverse_) {
     constexpr double kFew = 6.0;
     if (freedom_ < kFew) return;
     for (std::vector<Trial>* trials : {&joints_.all(), &changes_.all()}) {
@@ -198,14 +200,19 @@ class ErrorSearch {
   /// The smallest chance of any trial in draws of noise alone.
   [[nodiscard]] double least_chance_of_draws() const {
     double least = 1.0;
+    const NoiseDraws draws = noise_draws();
     std::mt19937 random(1);
     for (int i = 0; i < number_of_draws(); ++i) {
-      const ResidualSums sums = sums_of(draws_.draw(random));
+      const ResidualSums sums = sums_of(draws.draw(random));
       for (const Trial* trial : trials_) least = std::min(least, outcome(*trial, sums).chance);
     }
     return least;
   }
-  /// Fewer where rows are many: chance is small there.
+  /// Made only where something would be named.
+  [[nodiscard]] NoiseDraws noise_draws() const {
+    return {fitted_.fit, poses_, effects_, noise_, common_, inverse_};
+  }
+  /// 99, and fewer where rows are many: chance is small there.
   [[nodiscard]] int number_of_draws() const {
     constexpr double kDraws = 99.0, kFewest = 19.0, kRows = 2e6;
     const auto rows = static_cast<double>(fitted_.fit.residual.size());
@@ -216,20 +223,23 @@ class ErrorSearch {
     const double most = rule_of({.owner = {}, .course = ErrorCourse::mixture}).most;
     const auto mixture = changes_.mixture(fitted_.fit.residual, freedom_, most);
     if (!mixture) return;
+    const NoiseDraws draws = noise_draws();
     std::mt19937 random(1);
     for (int i = 0; i < number_of_draws(); ++i) {
-      if (changes_.mixture(draws_.draw(random), freedom_, mixture->noise_left)) return;
+      if (changes_.mixture(draws.draw(random), freedom_, mixture->noise_left)) return;
     }
     found.push_back(*mixture);
   }
 
   FittedSamples fitted_;
   const PoseGroups& poses_;
+  const Eigen::MatrixXd& effects_;
+  const std::vector<BlockNoise>& noise_;
+  const CommonNoise& common_;
   double freedom_;
   Eigen::MatrixXd inverse_;
   JointTrials joints_;
   ChangeTrials changes_;
-  NoiseDraws draws_;
   std::vector<const Trial*> trials_;
 };
 

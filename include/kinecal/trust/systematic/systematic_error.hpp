@@ -21,8 +21,8 @@
 //   g^T S^-1 g      g = X^T W r      S = X^T W (I - J C J^T W) X
 //
 // An error is reported if the noise falls far enough (rule_of()) and chance is excluded twice: by the beta distribution
-// of the explained share, where a pose counts at most six residuals, over all errors tried; and by 99 draws of the noise
-// that the residuals show (common_noise.hpp), none of which may explain as much.  A scale that is wrong by a hundredth and
+// of the explained share, where a pose counts at most six residuals, over all errors tried; and by draws of the noise that the
+// residuals show (common_noise.hpp; 99, down to 19 where rows are many), none of which may explain as much.  A scale that is wrong by a hundredth and
 // five standard errors is reported however much noise is left.  Features of a view err together, so a lens is tested by
 // fits without each pose in turn.  Errors that move the model's own parameters farther than robots are wrong are ignored.
 // Source: Chow, Tests of Equality Between Sets of Coefficients in Two Linear Regressions, 1960; Mooring, Roth, Driels,
