@@ -29,7 +29,7 @@ double position(const Sample& sample, const std::string& joint) {
 
 TEST(SystematicError, IsNoneInSamplesAsTheyShouldBe) {
   for (const int count : {8, 12, 20, 60}) {
-    for (unsigned seed = 1; seed <= 25; ++seed) {
+    for (unsigned seed = 1; seed <= 50; ++seed) {
       test::NoisyScene scene(count, seed);
       EXPECT_FALSE(error_in(scene)) << count << " samples, seed " << seed;
     }
@@ -166,6 +166,9 @@ TEST(RecordingChange, ThatIsADriftIsFoundWithItsSize) {
   EXPECT_EQ(found->owner, "elbow");
   EXPECT_EQ(found->course, ErrorCourse::drift);
   EXPECT_NEAR(found->size, 0.04, 0.004);
+  EXPECT_THAT(sentence(*found), HasSubstr("'elbow' drifts by 2."));
+  EXPECT_THAT(sentence(*found), HasSubstr(" deg from the first sample to the last: with an even "
+                                          "drift, the noise falls to "));
   EXPECT_LT(found->noise_left, 0.4);
 }
 
