@@ -117,16 +117,21 @@ TEST(Architecture, NoFolderIncludesAPieceOfAnother) {
 }
 
 /// A file holds what its name says, whole: nothing is cut off only to make it shorter.  The exceptions are formats,
-/// wraps of libraries that may be absent, and parts that would make a file of more than about 700 lines.
+/// wraps of libraries that may be absent, and classes in the files of their names.
 TEST(Architecture, APieceWithOneIncluderIsInIt) {
   const std::set<std::string> exceptions = {
-      "config/sample_warnings.ipp",         "explain/scale.ipp",
-      "files/bags/codec/bz2.ipp",           "files/bags/codec/lz4.ipp",
-      "files/bags/rosbag2/sqlite.ipp",      "files/images/bmp_image.ipp",
-      "files/images/jpeg_image.ipp",        "files/images/png_image.ipp",
-      "files/images/tiff_image.ipp",        "files/meshes/dae_mesh.ipp",
-      "files/meshes/stl_mesh.ipp",          "report/scene_features.ipp",
-      "trust/systematic/change_trials.ipp", "trust/systematic/joint_trials.ipp",
+      "explain/refit.ipp",
+      "files/bags/codec/bz2.ipp",
+      "files/bags/codec/lz4.ipp",
+      "files/bags/rosbag2/sqlite.ipp",
+      "files/images/bmp_image.ipp",
+      "files/images/jpeg_image.ipp",
+      "files/images/png_image.ipp",
+      "files/images/tiff_image.ipp",
+      "files/meshes/dae_mesh.ipp",
+      "files/meshes/stl_mesh.ipp",
+      "trust/systematic/change_trials.ipp",
+      "trust/systematic/joint_trials.ipp",
       "trust/systematic/lens_trials.ipp",
   };
   std::map<std::string, std::set<std::string>> includers;  // of each piece
@@ -194,7 +199,7 @@ TEST(Architecture, WhatNoHeaderDeclaresIsInDetail) {
     EXPECT_THAT(text, testing::HasSubstr("\nnamespace kinecal::detail {\n")) << file.path();
     EXPECT_THAT(text, testing::Not(testing::HasSubstr("\nnamespace kinecal {\n"))) << file.path();
   }
-  EXPECT_GT(insides, 20);
+  EXPECT_GT(insides, 30);
 }
 
 /// Above solve/, `x.cpp` beside `x.hpp` defines; an .ipp is a piece without a header, for a .cpp.

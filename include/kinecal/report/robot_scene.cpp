@@ -4,27 +4,422 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "kinecal/errors/plane_fit.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/kinematics/floating_joint.hpp"
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/report/left_out.ipp"
-#include "kinecal/report/scene_features.ipp"
 #include "kinecal/text/frame_name.hpp"
+#include "kinecal/text/reading.hpp"
+#include "kinecal/trust/uncertainty/feature_places.hpp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
+
+// The features of a scene: measured and predicted points before and after, and their errors.
+
+// Measured and predicted points for each kind of error block.
+
+/// A pair of points; nullopt if one of them is NaN.
+[[nodiscard]] std::optional<ScenePair> scene_pair(const Vector3<double>& measured,
+                                                  const Vector3<double>& predicted) {
+  if (!measured.allFinite() || !predicted.allFinite()) return std::nullopt;
+  const auto numbers = [](const Vector3<double>& p) { return ScenePoint{p.x(), p.y(), p.z()}; };
+  return ScenePair{numbers(measured), numbers(predicted)};
+}
+
+/// A point, and the point of a line of sight at its depth; nullopt behind the camera.
+[[nodiscard]] std::optional<ScenePair> pair_at_depth(const PlacedFeature& predicted,
+                                                     const PlacedFeature& ray) {
+  const double depth = ray.axis.dot(predicted.point - ray.origin);
+  if (!(depth > 0.0)) return std::nullopt;
+  return scene_pair(ray.origin + ray.point * (depth / ray.axis.dot(ray.point)), predicted.point);
+}
+
+/// Where two lines of sight are nearest to each other; nullopt if they are parallel.
+[[nodiscard]] std::optional<ScenePair> pair_of_rays(const PlacedFeature& a,
+                                                    const PlacedFeature& b) {
+  const Vector3<double> u = a.point.normalized(), v = b.point.normalized();
+  const Vector3<double> way = b.origin - a.origin;
+  const double c = u.dot(v), across = 1.0 - c * c;
+  if (!(across > 1e-12)) return std::nullopt;
+  const double along_a = (way.dot(u) - c * way.dot(v)) / across,
+               along_b = (c * way.dot(u) - way.dot(v)) / across;
+  return scene_pair(a.origin + u * along_a, b.origin + v * along_b);
+}
+
+/// The point at a distance from another one, towards the measured point.
+[[nodiscard]] std::optional<ScenePair> pair_at_distance(const Vector3<double>& measured,
+                                                        const Vector3<double>& from,
+                                                        double distance) {
+  return scene_pair(measured, from + (measured - from).normalized() * distance);
+}
+
+/// The plane through points; nullopt if they do not determine one.
+[[nodiscard]] std::optional<Plane<double>> plane_through(
+    const std::vector<Vector3<double>>& points) {
+  if (points.size() < 3) return std::nullopt;
+  const PlaneFit<double> fit(points);
+  if (!fit.determined()) return std::nullopt;
+  return fit.plane();
+}
+
+/// The foot of each point of a sensor on the plane of the other sensor's; both ways.
+[[nodiscard]] std::vector<std::optional<ScenePair>> pairs_of_planes(
+    const std::vector<PlacedFeature>& a, const std::vector<PlacedFeature>& b) {
+  const auto fit = [](const std::vector<PlacedFeature>& features) {
+    std::vector<Vector3<double>> points;
+    for (const PlacedFeature& feature : features) {
+      if (feature.seen) points.push_back(feature.point);
+    }
+    return plane_through(points);
+  };
+  const auto of_a = fit(a), of_b = fit(b);
+  if (!of_a || !of_b) return {};
+  std::vector<std::optional<ScenePair>> pairs;
+  const auto add = [&](const std::vector<PlacedFeature>& features, const Plane<double>& plane) {
+    for (const PlacedFeature& feature : features) {
+      if (!feature.seen) continue;
+      const double off = plane.normal.dot(feature.point - plane.centroid);
+      pairs.push_back(scene_pair(feature.point, feature.point - plane.normal * off));
+    }
+  };
+  add(a, *of_b);
+  add(b, *of_a);
+  return pairs;
+}
+
+/// The normal of a plane when only distances of points are known: r = n . p + d.
+///
+/// In the principal axes of the points, the two components along their extent follow from a linear
+/// fit.  Points near a plane hardly determine the third; the length of n gives it, with the sign
+/// that fits.
+class PlaneOfDistances {
+ public:
+  void add(const Vector3<double>& p, double r) {
+    points_.push_back(p);
+    distances_.push_back(r);
+  }
+  /// (3) unit vector; nullopt if the points are on one line.
+  [[nodiscard]] std::optional<Vector3<double>> normal() const {
+    const auto plane = plane_through(points_);
+    if (!plane) return std::nullopt;
+    const Vector3<double>&centroid = plane->centroid, &across = plane->normal;
+    double mean = 0.0;
+    for (const double r : distances_) mean += r / static_cast<double>(distances_.size());
+    Matrix3<double> scatter = Matrix3<double>::Zero();
+    Vector3<double> moment = Vector3<double>::Zero();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Vector3<double> q = points_[i] - centroid;
+      scatter += q * q.transpose();
+      moment += q * (distances_[i] - mean);
+    }
+    // The minimum of |q . n - r|^2 over n perpendicular to `across`: a term holds what is along it
+    // at zero.
+    const Matrix3<double> out = across * across.transpose(), in = Matrix3<double>::Identity() - out;
+    const Matrix3<double> held = in * scatter * in + out * scatter.trace();
+    const Vector3<double> along = held.inverse() * (in * moment);
+    const double rest = std::sqrt(std::max(0.0, 1.0 - along.squaredNorm()));
+    const auto misfit = [&](const Vector3<double>& n) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        const double off = n.dot(points_[i] - centroid) - (distances_[i] - mean);
+        sum += off * off;
+      }
+      return sum;
+    };
+    const Vector3<double> up = along + across * rest, down = along - across * rest;
+    return (misfit(up) <= misfit(down) ? up : down).normalized();
+  }
+
+ private:
+  std::vector<Vector3<double>> points_;
+  std::vector<double> distances_;
+};
+
+// The observed and predicted features of a sample as points in the base.
+
+/// The points of a problem for given parameters.
+class ScenePoints {
+ public:
+  /// @param values  of all parameters of the table
+  ScenePoints(const AnyProblem& problem, std::span<const double> values)
+      : problem_(problem), values_(values), places_(problem, values) {}
+
+  /// The pairs that a term compares in a sample, by feature; nullopt where undefined, empty if its
+  /// kind cannot be drawn.
+  /// @param sample  from AnyProblem::paired()
+  [[nodiscard]] std::vector<std::optional<ScenePair>> pairs(const Term& term,
+                                                            const Sample& sample) const {
+    using enum Quantity;
+    const auto quantities = term.quantities;
+    const std::vector<Quantity> kinds(quantities.begin(), quantities.end());
+    std::vector<std::vector<PlacedFeature>> seen;
+    for (const int s : term.sensors) {
+      const Observation* observation = sample.observation(sensor(s).mount().name);
+      if (observation == nullptr || !is_known(sensor(s))) return {};
+      seen.push_back(places_.placed(s, *observation, sample));
+    }
+    if (kinds == std::vector{plane, plane}) return pairs_of_planes(seen[0], seen[1]);
+    std::vector<std::optional<ScenePair>> all;
+    for (const std::size_t i : compared(term, sample)) {
+      const PlacedFeature &a = seen.front()[i], &b = seen.back()[i];
+      if (kinds == std::vector{point}) {
+        all.push_back(alone(term, a.point));
+      } else if (kinds == std::vector{point, pixel}) {
+        all.push_back(pair_at_depth(a, b));
+      } else if (kinds == std::vector{ray, ray}) {
+        all.push_back(pair_of_rays(a, b));
+      } else if (kinds == std::vector{point, point} || kinds == std::vector{pose, pose}) {
+        const bool second = !is_camera(term.sensors[0]) && is_camera(term.sensors[1]);
+        all.push_back(both(term, second ? b.point : a.point, second ? a.point : b.point));
+      }
+    }
+    return all;
+  }
+
+  /// The features that a term compares: those that all of its sensors saw.
+  [[nodiscard]] std::vector<std::size_t> compared(const Term& term, const Sample& sample) const {
+    std::vector<std::size_t> all;
+    std::size_t count = 0;
+    std::vector<const Observation*> seen;
+    for (const int s : term.sensors) {
+      seen.push_back(sample.observation(sensor(s).mount().name));
+      if (seen.back() == nullptr) return all;
+      count = seen.size() == 1 ? seen[0]->features.size()
+                               : std::min(count, seen.back()->features.size());
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool by_all = std::all_of(seen.begin(), seen.end(),
+                                      [i](const auto* of) { return is_seen(of->features[i]); });
+      if (by_all) all.push_back(i);
+    }
+    return all;
+  }
+
+ private:
+  [[nodiscard]] const MountedSensor& sensor(int s) const {
+    return problem_.sensors()[static_cast<std::size_t>(s)];
+  }
+  [[nodiscard]] bool is_camera(int s) const { return sensor(s).sensor().in_own_frame(); }
+
+  /// Points, rays and poses have a place.
+  [[nodiscard]] static bool is_known(const MountedSensor& sensor) {
+    const std::optional<Quantity> places = sensor.sensor().places();
+    return places && *places != Quantity::reading;
+  }
+
+  /// A point compared with a sphere, or with a plane whose foot is computed later.
+  [[nodiscard]] std::optional<ScenePair> alone(const Term& term, const Vector3<double>& p) const {
+    if (term.options.type != PointToSphere::kType) return scene_pair(p, p);
+    const auto v = own<4>(term.parameters);
+    return pair_at_distance(p, {v[0], v[1], v[2]}, v[3]);
+  }
+  [[nodiscard]] std::optional<ScenePair> both(const Term& term, const Vector3<double>& measured,
+                                              const Vector3<double>& predicted) const {
+    if (term.options.type == PointDistance::kType) {
+      return pair_at_distance(measured, predicted, own<1>(term.parameters)[0]);
+    }
+    if (term.feature_size < 3) return std::nullopt;  // points that need not coincide
+    return scene_pair(measured, predicted);
+  }
+
+  template <std::size_t N>
+  [[nodiscard]] std::array<double, N> own(const std::vector<int>& parameters) const {
+    std::array<double, N> all{};
+    for (std::size_t i = 0; i < std::min(N, parameters.size()); ++i) {
+      if (parameters[i] >= 0) all[i] = values_[static_cast<std::size_t>(parameters[i])];
+    }
+    return all;
+  }
+
+  const AnyProblem& problem_;
+  std::span<const double> values_;
+  FeaturePlaces places_;
+};
+
+/// Residuals of the shown samples: by sample and term.
+using SceneResiduals = std::map<std::pair<int, int>, std::vector<double>>;
+
+[[nodiscard]] SceneResiduals scene_residuals(const AnyProblem& problem,
+                                             std::span<const double> values,
+                                             const std::vector<std::size_t>& shown) {
+  SceneResiduals all;
+  (void)evaluate(problem, values, nullptr, [&](int t, int sample, const TermResiduals& of) {
+    if (!std::binary_search(shown.begin(), shown.end(), static_cast<std::size_t>(sample))) return;
+    all[{sample, t}].assign(of.residual.begin(), of.residual.end());
+  });
+  return all;
+}
+
+/// Points of blocks that compare with a plane: their feet are computed once all points are known.
+[[nodiscard]] bool is_point_to_plane(const Term& term) {
+  return term.options.type == PointToPlane::kType;
+}
+
+/// True if a block's single points can be drawn: with a sphere or a plane.
+[[nodiscard]] bool can_be_drawn(const Term& term) {
+  return term.quantities.size() != 1 || is_point_to_plane(term) ||
+         term.options.type == PointToSphere::kType;
+}
+
+/// Limits the features of a sample: the worst quarter, others evenly.
+std::size_t thin_features(std::vector<SceneFeature>& features, std::size_t most) {
+  const std::size_t all = features.size();
+  if (all <= most) return all;
+  std::vector<std::size_t> order(all);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return features[a].distance.value_or(0.0) > features[b].distance.value_or(0.0);
+  });
+  const std::size_t worst = most / 4;
+  std::sort(order.begin() + static_cast<std::ptrdiff_t>(worst), order.end());
+  std::vector<std::size_t> chosen(order.begin(),
+                                  order.begin() + static_cast<std::ptrdiff_t>(worst));
+  const std::size_t others = all - worst, wanted = most - worst;
+  for (std::size_t i = 0; i < wanted; ++i) chosen.push_back(order[worst + i * others / wanted]);
+  std::sort(chosen.begin(), chosen.end());
+  std::vector<SceneFeature> kept;
+  for (const std::size_t i : chosen) kept.push_back(std::move(features[i]));
+  features = std::move(kept);
+  return most;
+}
+
+/// Adds the features of a problem's samples to a scene.
+class SceneFeatures {
+ public:
+  SceneFeatures(const AnyProblem& problem, std::span<const double> before,
+                std::span<const double> after, const std::vector<std::size_t>& shown)
+      : problem_(problem),
+        points_{ScenePoints(problem, before), ScenePoints(problem, after)},
+        residuals_{scene_residuals(problem, before, shown), scene_residuals(problem, after, shown)},
+        planes_(static_cast<std::size_t>(problem.num_terms())) {}
+
+  [[nodiscard]] std::vector<SceneFeature> of(int sample, const Sample& recorded) {
+    const std::optional<Sample> paired = problem_.paired(recorded);
+    std::vector<SceneFeature> features;
+    for (int t = 0; t < problem_.num_terms(); ++t) {
+      const Term& term = problem_.term(t);
+      if (!can_be_drawn(term)) continue;
+      const std::size_t first = features.size();
+      for (std::size_t when = 0; when < 2; ++when) {
+        const auto residuals = residuals_[when].find({sample, t});
+        if (residuals == residuals_[when].end()) continue;  // it does not apply, or is undefined
+        const auto pairs = points_[when].pairs(term, paired ? *paired : recorded);
+        if (features.size() == first) add(t, sample, pairs.size(), features);
+        for (std::size_t i = 0; i < std::min(pairs.size(), features.size() - first); ++i) {
+          set(term, when, i, residuals->second, pairs[i], features[first + i]);
+        }
+      }
+    }
+    std::erase_if(features, [](const SceneFeature& of) { return !of.before && !of.after; });
+    return features;
+  }
+
+  /// Sets the feet of points on planes.
+  void set_feet(RobotScene& scene) const {
+    std::vector<std::optional<Vector3<double>>> normals;
+    for (const PlaneOfDistances& plane : planes_) normals.push_back(plane.normal());
+    for (SceneSample& sample : scene.samples) {
+      for (SceneFeature& feature : sample.features) {
+        const auto t = static_cast<std::size_t>(feature.block);
+        if (!is_point_to_plane(problem_.term(feature.block))) continue;
+        move(feature.before, normals[t]);
+        move(feature.after, normals[t]);
+      }
+      std::erase_if(sample.features,
+                    [](const SceneFeature& of) { return !of.before && !of.after; });
+    }
+  }
+
+ private:
+  void add(int t, int sample, std::size_t count, std::vector<SceneFeature>& features) const {
+    const bool plane = !problem_.term(t).pairs_features();
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto n = static_cast<std::ptrdiff_t>(i);
+      features.push_back(
+          {.block = t,
+           .name = plane ? fmt::format("point {}", i + 1) : problem_.feature(t, sample, n).text(),
+           .before = {},
+           .after = {}});
+    }
+  }
+
+  void set(const Term& term, std::size_t when, std::size_t i, const std::vector<double>& residuals,
+           const std::optional<ScenePair>& pair, SceneFeature& feature) {
+    (when == 0 ? feature.before : feature.after) = pair;
+    const auto size = static_cast<std::size_t>(term.feature_size);
+    if (!term.pairs_features() || (i + 1) * size > residuals.size()) return;
+    double squares = 0.0;
+    for (std::size_t k = i * size; k < (i + 1) * size; ++k) squares += residuals[k] * residuals[k];
+    if (pair && is_point_to_plane(term)) {
+      const ScenePoint& p = (*pair)[0];
+      planes_[static_cast<std::size_t>(feature.block)].add({p[0], p[1], p[2]}, residuals[i]);
+      // The distance is kept here until the normal is known.
+      (when == 0 ? feature.before : feature.after) = ScenePair{p, {residuals[i], 0.0, 0.0}};
+    }
+    if (when == 0) return;
+    feature.distance = std::sqrt(squares);
+    feature.error = reading(*feature.distance, term.options.unit);
+  }
+
+  static void move(std::optional<ScenePair>& pair, const std::optional<Vector3<double>>& normal) {
+    if (!pair) return;
+    if (!normal) {
+      pair.reset();
+      return;
+    }
+    auto& [p, foot] = *pair;
+    const double off = foot[0];
+    for (std::size_t k = 0; k < 3; ++k) foot[k] = p[k] - off * (*normal)(static_cast<int>(k));
+  }
+
+  const AnyProblem& problem_;
+  std::array<ScenePoints, 2> points_;
+  std::array<SceneResiduals, 2> residuals_;
+  std::vector<PlaneOfDistances> planes_;  ///< of each term
+};
+
+void add_features(const AnyProblem& problem, const ParameterTable& table,
+                  std::span<const Sample> samples, const std::vector<std::size_t>& shown,
+                  std::size_t most, RobotScene& scene) {
+  std::vector<double> before, after;
+  for (const Parameter& parameter : table) {
+    before.push_back(parameter.initial);
+    after.push_back(parameter.value);
+  }
+  SceneFeatures features(problem, before, after, shown);
+  std::size_t all = 0, kept = 0;
+  const std::size_t each = std::max<std::size_t>(4, most / std::max<std::size_t>(1, shown.size()));
+  for (std::size_t n = 0; n < shown.size(); ++n) {
+    SceneSample& sample = scene.samples[n];
+    sample.features = features.of(static_cast<int>(shown[n]), samples[shown[n]]);
+    all += sample.features.size();
+    kept += thin_features(sample.features, each);
+  }
+  features.set_feet(scene);
+  if (kept == all) return;
+  scene.thinned +=
+      (scene.thinned.empty() ? "" : ", ") + fmt::format("{} of {} features in them", kept, all);
+}
 
 // Floating joints in a scene.
 
