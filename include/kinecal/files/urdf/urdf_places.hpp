@@ -27,6 +27,7 @@ struct XacroLeft {
   SourceLocation place;
 };
 
+/// The joints of a URDF, and the lines of their elements.
 class UrdfPlaces {
  public:
   /// @param file  name of the file for messages
@@ -49,7 +50,7 @@ class UrdfPlaces {
 
   /// The numbers of an attribute of a joint's element.
   /// @param count  required number; any other is an error
-  /// @return       (count) zeros if there is no such attribute, or an error
+  /// @return       (count) zeros without such an attribute, or after an error
   [[nodiscard]] std::vector<double> numbers(const std::string& joint, const char* element,
                                             const char* attribute, std::size_t count,
                                             Diagnostics& diagnostics) const;
