@@ -175,8 +175,8 @@ std::string verdict_text(const Check& check) {
   if (!check.result.knows_common) {
     text += "  - " + check.result.report +
             " does not say what noise the features of a pose share (common_noise), as an older "
-            "version wrote it: less noise is expected, and a change may be reported where nothing moved; "
-            "calibrate again\n";
+            "version wrote it: less noise is expected, and a change may be reported where nothing "
+            "moved; calibrate again\n";
   }
   text += missed_text(check, drift.missed);
   if (check.fresh.samples.size() < kEnough) {

@@ -50,16 +50,20 @@ TEST_F(SceneMeshes, AFileThatIsUsedTwiceIsReadOnce) {
 
 TEST_F(SceneMeshes, WhatIsNotThereIsOneWarningForEachReason) {
   write("cut.stl", "solid vertex");
-  add({mesh("base", "package://p/a.stl"), mesh("arm", "package://p/b.stl"),
-       mesh("arm", "package://p/b.stl"), mesh("arm", "cut.stl"), mesh("nowhere", "x.stl")});
+  add({mesh("base", "package://absent_description/a.stl"),
+       mesh("arm", "package://absent_description/b.stl"),
+       mesh("arm", "package://absent_description/b.stl"), mesh("arm", "cut.stl"),
+       mesh("nowhere", "x.stl")});
   EXPECT_THAT(scene_.links[0].visuals, IsEmpty());
   EXPECT_THAT(scene_.links[1].visuals, IsEmpty());
   EXPECT_THAT(
       diagnostics_.warnings,
       ElementsAre(
           AllOf(HasSubstr("r.urdf: mesh 'cut.stl' is not drawn: "), HasSubstr("not three numbers")),
-          AllOf(HasSubstr("mesh 'package://p/a.stl' (and 1 other) is not drawn: it is of"),
-                HasSubstr("--mesh-path"))));
+          AllOf(
+              HasSubstr(
+                  "mesh 'package://absent_description/a.stl' (and 1 other) is not drawn: it is of"),
+              HasSubstr("--mesh-path"))));
 }
 
 TEST_F(SceneMeshes, TogetherTheyStayInTheirBudget) {
