@@ -11,7 +11,7 @@
 
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/samples/sample.hpp"
-#include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/sensors/depth/depth_camera.hpp"
 #include "kinecal/study/seeded_random.hpp"
 
 namespace kinecal::examples {

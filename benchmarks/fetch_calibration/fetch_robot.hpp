@@ -10,7 +10,7 @@
 
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
-#include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/sensors/depth/depth_camera.hpp"
 #include "robots/fetch_bench_robot.hpp"
 
 namespace kinecal::bench {

@@ -4,8 +4,8 @@
 
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "kinecal/parameters/free_parameters.hpp"
-#include "kinecal/parameters/joint_model.hpp"
-#include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/parameters/joint_models/joint_model.hpp"
+#include "kinecal/parameters/joint_models/joint_models.hpp"
 #include "kinecal/parameters/joint_parameters.hpp"
 #include "kinecal/parameters/own_parameters.hpp"
 #include "kinecal/parameters/parameter.hpp"

@@ -7,7 +7,7 @@
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/files/results/result_files.hpp"
-#include "kinecal/sensors/true_depth.hpp"
+#include "kinecal/sensors/depth/true_depth.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
 #include "support/repetitions.hpp"
 #include "support/scene.hpp"

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "support/noisy_scene.hpp"
 
@@ -68,6 +70,63 @@ TEST(LeftOutSamples, AreAsIfTheyHadNeverBeenAdded) {
   problem->add_sample(samples[0]);
   samples.push_back(samples[0]);
   expect_same(*problem, *scene.problem(samples), scene.truth, scene.free());
+}
+
+/// The samples with points elsewhere.
+std::vector<Sample> moved(std::vector<Sample> samples) {
+  double shift = 0.0;
+  for (Sample& sample : samples) {
+    for (Observation& seen : sample.observations) {
+      for (Feature& feature : seen.features) feature.point.array() += 1e-3 * std::sin(shift += 0.7);
+    }
+  }
+  return samples;
+}
+
+TEST(Measurements, ThatAreReplacedAreAsIfTheyHadBeenAdded) {
+  const NoisyScene scene(1);
+  std::vector<Sample> samples = unlike_samples(40);
+  const std::unique_ptr<AnyProblem> problem = scene.problem(samples);
+  problem->exclude({3, 20});
+  for (const std::ptrdiff_t i : {20, 3}) samples.erase(samples.begin() + i);
+  samples = moved(samples);
+  for (int i = 0; i < problem->num_samples(); ++i) {
+    const Sample& sample = samples[static_cast<std::size_t>(i)];
+    const Sample paired = problem->paired(sample).value_or(sample);
+    for (const Observation& seen : paired.observations) problem->set_measurements(i, seen);
+  }
+  const std::unique_ptr<AnyProblem> expected = scene.problem(samples);
+  expect_same(*problem, *expected, scene.truth, scene.free());
+  for (int i = 0; i < problem->num_samples(); ++i) {
+    EXPECT_EQ(problem->fingerprint(i) == problem->fingerprint(0),
+              expected->fingerprint(i) == expected->fingerprint(0));
+  }
+}
+
+TEST(Measurements, OfAnotherKindAreRefusedAndNothingChanges) {
+  const NoisyScene scene(3);
+  const std::unique_ptr<AnyProblem> problem = scene.problem(scene.samples);
+  const auto before = rows_of(*problem, scene.truth);
+  const auto refused = [&](const auto& spoil) {
+    Observation seen = moved(scene.samples)[1].observations[0];
+    spoil(seen);
+    try {
+      problem->set_measurements(1, seen);
+    } catch (const std::exception& e) {
+      EXPECT_EQ(rows_of(*problem, scene.truth), before);
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(refused([](Observation& seen) { seen.features.pop_back(); }),
+              HasSubstr("can be replaced by as many in the same frames only"));
+  EXPECT_THAT(refused([](Observation& seen) { seen.features[1].point.x() = std::nan(""); }),
+              HasSubstr("feature 2 is not a number"));
+  EXPECT_THAT(refused([](Observation& seen) { seen.features[0].frame = "nowhere"; }),
+              HasSubstr("a feature is in frame 'nowhere'"));
+  EXPECT_THAT(refused([](Observation& seen) { seen.sensor = "nobody"; }),
+              HasSubstr("no sensor 'nobody'"));
 }
 
 TEST(LeftOutSamples, OfALayoutLeaveNothingThatTouchesItsParameters) {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/sensors/depth/depth_camera.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
 
 namespace kinecal {

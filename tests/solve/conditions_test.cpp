@@ -87,9 +87,65 @@ TEST(Conditions, ThatAreMissingAreNamed) {
   EXPECT_EQ(problem.num_samples(), 0);
   sample.conditions["temperature"] = temperature;
   EXPECT_EQ(message(), "no error");
+  sample.conditions.erase("load");  // a feature of either sensor may have it
+  for (std::size_t i = 0; i < 4; ++i) {
+    sample.observations[i % 2 == 0 ? 0 : 3].features[i].conditions = {{"load", 0.5}};
+  }
+  EXPECT_EQ(message(), "no error");
+  sample.observations[3].features[1].conditions = {{"loud", 0.5}};
+  EXPECT_EQ(
+      message(),
+      "s.yaml:12: error block 'block': condition 'load' is not in feature 2 or the sample; did "
+      "you mean 'loud'?");
   sample.conditions.clear();
   sample.observations[3].features.clear();
   EXPECT_EQ(message(), "no error") << "the block does not take this sample";
+}
+
+/// A wall whose normal and distance each point brings with it.
+struct WallOfPoint {
+  static constexpr const char* kUnit = "m";
+  static constexpr std::array<std::string_view, 4> kConditions = {"nx", "ny", "nz", "d"};
+
+  template <class S, class Q>
+  [[nodiscard]] Eigen::Matrix<S, 1, 1> operator()(const Vector3<S>& p,
+                                                  const std::array<Q, 4>& wall) const {
+    return Eigen::Matrix<S, 1, 1>(p.x() * wall[0] + p.y() * wall[1] + p.z() * wall[2] + wall[3]);
+  }
+};
+
+/// Points that each lie on a wall of their own: the zero of the wrist is found, also after the walls were replaced.
+TYPED_TEST(Conditions, OfFeaturesAreTheirNormals) {
+  using test::open_problem;
+  BasicProblem<TypeParam> problem = open_problem<TypeParam>(WallOfPoint{}, {"arm"});
+  Eigen::VectorXd truth = problem.table().values();
+  const auto wrist = problem.table().index("wrist");
+  const FreeSet free = test::free_of(problem.table(), {"wrist"});
+  const auto on_walls = [&](double zero) {
+    truth(wrist) = zero;
+    const std::span<const double> x(truth.data(), static_cast<std::size_t>(truth.size()));
+    std::vector<Sample> samples = test::open_samples(problem, x, 9);
+    for (Sample& sample : samples) {
+      const Pose<double> hand = test::tip_pose(problem, 0, "hand", sample, x);
+      double turn = zero;
+      for (Feature& feature : sample.observations[0].features) {
+        const Vector3<double> n = Vector3<double>(std::sin(turn += 1.0), std::cos(turn), 0.3);
+        feature.conditions = {
+            {"nx", n.x()}, {"ny", n.y()}, {"nz", n.z()}, {"d", -n.dot(hand * feature.point)}};
+      }
+    }
+    return samples;
+  };
+  for (const Sample& sample : on_walls(0.02)) problem.add_sample(sample);
+  for (const double zero : {0.02, -0.03}) {
+    const std::vector<Sample> samples = on_walls(zero);
+    for (std::size_t i = 0; zero < 0.0 && i < samples.size(); ++i) {
+      problem.set_measurements(static_cast<int>(i), samples[i].observations[0]);
+    }
+    Eigen::VectorXd values = problem.table().values();
+    ASSERT_TRUE(solve(problem, free, values).converged);
+    EXPECT_NEAR(values(wrist), zero, 1e-12);
+  }
 }
 
 }  // namespace

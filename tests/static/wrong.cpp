@@ -126,10 +126,10 @@ Crate<Arm, Head, FrameOffset<"head_pan_joint", Axes::xyz>,
 // meant: camera
 Crate<Arm, Head, DepthIntrinsics<"camrea">, HandEye> misspelt_camera;
 
-// expect: no joint model that fits the joint has this parameter; parameters/joint_model.hpp has their
+// expect: no joint model that fits the joint has this parameter; parameters/joint_models/joint_model.hpp has their
 Crate<Arm, Head, JointModelParameters<"elbow_flex_joint", "gear_ratios">, HandEye> misspelt_model;
 
-// expect: no joint model that fits the joint has this parameter; parameters/joint_model.hpp has their
+// expect: no joint model that fits the joint has this parameter; parameters/joint_models/joint_model.hpp has their
 Crate<Arm, Head, JointModelParameters<"torso_lift_joint", "eccentric_sin">, HandEye>
     eccentric_slide;
 

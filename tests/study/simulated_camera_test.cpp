@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/sensors/depth/depth_camera.hpp"
 
 namespace kinecal {
 namespace {

@@ -44,6 +44,10 @@ std::vector<Sample> samples_near(const BasicProblem<S>& problem, std::vector<dou
   std::vector<Sample> samples = open_samples(problem, x, count, arm_frame);
   if (distorted) samples[1].observations[2].camera->d = {-0.2, 0.1, 2e-3, -1e-3, 0.05};
   samples[2].observations[4].features[1].point.x() = std::numeric_limits<double>::quiet_NaN();
+  for (const std::size_t i : {0, 2, 3}) {  // of the second sensor; one of the first comes before it
+    samples[1].observations[3].features[i].conditions = {{"load", 5.0 * static_cast<double>(i)}};
+  }
+  samples[1].observations[1].features[2].conditions = {{"load", 7.0}, {"temperature", 30.0}};
   return samples;
 }
 

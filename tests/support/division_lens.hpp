@@ -1,4 +1,4 @@
-// A lens of a user's own: the division model with one coefficient.
+// A lens of a user's own: the division model with one coefficient, and no sight(), which is found.
 // Source: Fitzgibbon, Simultaneous Linear Estimation of Multiple View Geometry and Lens Distortion, 2001.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -18,13 +18,6 @@ struct Division {
     const S x = p.x() / p.z(), y = p.y() / p.z();
     const S scale = 2.0 / (1.0 + sqrt(S(1.0 - 4.0 * d[0] * (x * x + y * y))));
     return {x * scale, y * scale};
-  }
-  template <class S, class C>
-  static Sight<S> sight(const Eigen::Matrix<S, 2, 1>& at, const std::array<C, 1>& d) {
-    const S x = at.x(), y = at.y();
-    return {{x, y, S(1.0 + d[0] * (x * x + y * y))},
-            {S(1.0), S(0.0), S(2.0 * d[0] * x)},
-            {S(0.0), S(1.0), S(2.0 * d[0] * y)}};
   }
   /// Up to 45 degrees, where image() is defined for k below 1/4.
   template <class S>

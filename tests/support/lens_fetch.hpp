@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "support/simulated.hpp"
 
 namespace kinecal::test {

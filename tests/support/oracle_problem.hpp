@@ -11,6 +11,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 
 #include "kinecal/errors.hpp"
@@ -97,12 +98,18 @@ auto oracle_own(const std::string& name, const std::vector<const OracleView*>& v
   return own;
 }
 
-/// The conditions of the sample that a block takes.
+/// The conditions that a block takes: the sample's, or those of feature i where one of its sensors has them.
 template <class B>
-auto oracle_conditions(const OracleView& view) {
+auto oracle_conditions(const std::vector<const OracleView*>& views, std::optional<std::size_t> i) {
   detail::ConditionsOf<B, OracleJet> all;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    all[k] = OracleJet(view.sample->conditions.at(std::string(kConditionsOfBlock<B>[k])));
+    const std::string name(kConditionsOfBlock<B>[k]);
+    std::map<std::string, double> known = views[0]->sample->conditions;
+    for (std::size_t s = views.size(); i && s-- > 0;) {
+      const auto& own = views[s]->seen->features[*i].conditions;
+      if (own.contains(name)) known[name] = own.at(name);
+    }
+    all[k] = OracleJet(known.at(name));
   }
   return all;
 }
@@ -114,7 +121,7 @@ OracleResiduals oracle_residual(const B& block, const std::string& name,
                                 Takes<Qs...>) {
   const auto r = [&]<std::size_t... I>(std::index_sequence<I...>) {
     return detail::call_block<B, OracleJet>(block, oracle_own<B>(name, views),
-                                            oracle_conditions<B>(*views[0]),
+                                            oracle_conditions<B>(views, i),
                                             oracle_argument<Qs>(*views[I], i)...);
   }
   (std::make_index_sequence<sizeof...(Qs)>{});
@@ -130,7 +137,7 @@ OracleResiduals oracle_residuals(const B& block, const std::string& name,
   } else if constexpr (PlanePairBlock<B>) {
     const auto a = views[0]->plane(), b = views[1]->plane();
     const auto r = detail::call_block<B, OracleJet>(
-        block, oracle_own<B>(name, views), oracle_conditions<B>(*views[0]),
+        block, oracle_own<B>(name, views), oracle_conditions<B>(views, std::nullopt),
         Plane<OracleJet>{a.centroid, a.normal}, Plane<OracleJet>{b.centroid, b.normal});
     return {r.data(), r.data() + r.size()};
   } else {
@@ -150,7 +157,7 @@ OracleResiduals oracle_residuals(const B& block, const std::string& name,
           pixel.observed(k) = ValueOf<OracleJet>(seen(k));
         }
         const auto of_pixel = detail::call_block<B, OracleJet>(
-            block, oracle_own<B>(name, views), oracle_conditions<B>(*views[0]), pixel);
+            block, oracle_own<B>(name, views), oracle_conditions<B>(views, i), pixel);
         r = {of_pixel.data(), of_pixel.data() + of_pixel.size()};
       } else if constexpr (std::same_as<B, PointToPoint>) {
         r = oracle_residual(block, views[0]->points[i], views[1]->points[i]);

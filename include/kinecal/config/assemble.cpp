@@ -27,7 +27,7 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/chain.hpp"
-#include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/parameters/joint_models/joint_models.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/problem/term.hpp"
 #include "kinecal/samples/paired_features.hpp"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/parameters/joint_models/joint_models.hpp"
 
 namespace kinecal::detail {
 

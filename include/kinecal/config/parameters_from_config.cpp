@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "kinecal/geometry/rpy.hpp"
-#include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/parameters/joint_models/joint_models.hpp"
 #include "kinecal/parameters/joint_parameters.hpp"
 #include "kinecal/text/frame_name.hpp"
 

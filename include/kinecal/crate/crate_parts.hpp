@@ -12,7 +12,7 @@
 #include "kinecal/parameters/free_parameters.hpp"
 #include "kinecal/problem/term.hpp"
 #include "kinecal/sensors/chain_point.hpp"
-#include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/sensors/depth/depth_camera.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
 
 namespace kinecal {

@@ -5,7 +5,7 @@
 
 #include "kinecal/crate/crate_parts.hpp"
 #include "kinecal/kinematics/known_name.hpp"
-#include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/parameters/joint_models/joint_models.hpp"
 #include "kinecal/parameters/joint_parameters.hpp"
 #include "kinecal/text/sentence.hpp"
 
@@ -46,7 +46,7 @@ template <class Parameter, bool kIsKnown = false>
 struct NameOfModel {
   static_assert(kIsKnown,
                 "kinecal: no joint model that fits the joint has this parameter; "
-                "parameters/joint_model.hpp has their names");
+                "parameters/joint_models/joint_model.hpp has their names");
 };
 template <class Parameter, class Found, bool kIsKnown = false>
 struct OwnerOfParameter {

@@ -33,12 +33,15 @@
 //
 // Define initial() if their initial values are not constants.
 //
-// A block may also take numbers of a sample, such as a temperature.  They are its last argument, in
-// a plain scalar:
+// A block may also take numbers of a feature, such as the normal of a wall there, or of its sample, such as a
+// temperature.  They are its last argument, in a plain scalar:
 //
-//   static constexpr std::array<std::string_view, 1> kConditions = {"temperature"};
+//   static constexpr std::array<std::string_view, 4> kConditions = {"nx", "ny", "nz", "temperature"};
 //   template <class S, class Q>
-//   auto operator()(const Vector3<S>& p, const std::array<Q, 1>& conditions) const;
+//   auto operator()(const Vector3<S>& p, const std::array<Q, 4>& conditions) const;
+//
+// Each is looked up in Feature::conditions of the block's sensors, in their order, then in Sample::conditions.  Blocks
+// of planes take those of the sample.
 //
 // A scalar may be a packet with one sample per lane, so a block must not branch on values: write
 // select(x < y, a, b) instead of x < y ? a : b.  (Planes are compared sample by sample; their
@@ -114,13 +117,13 @@ concept ResidualVector = kIsResidualVector<std::remove_const_t<R>>;
 /// Number of a block's own parameters: the size of B::kParameters, if it has them.
 template <class B>
 inline constexpr std::size_t kParametersOfBlock = detail::count_own<B>();
-/// Names of the conditions of a sample that a block takes: B::kConditions, if it has them.
+/// Names of the conditions of a feature or its sample that a block takes: B::kConditions, if it has them.
 template <class B>
 inline constexpr auto kConditionsOfBlock = detail::condition_names<B>();
 
 namespace detail {
 
-/// Own parameters of a block in S and conditions of a sample in its plain scalar.
+/// Own parameters of a block in S, and conditions in its plain scalar.
 template <class B, class S>
 using OwnOf = std::array<S, kParametersOfBlock<B>>;
 template <class B, class S>

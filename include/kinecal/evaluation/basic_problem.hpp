@@ -107,7 +107,11 @@ class BasicProblem final : public AnyProblem {
   void set_walks(const std::vector<detail::CompiledWalk<S>>& walks);
   void add_to_batch(std::size_t index, const detail::SampleLayout& layout,
                     std::span<const double> numbers) override;
-  std::vector<int> renumber_in_batches(std::span<const int> numbers) override;
+  [[nodiscard]] std::vector<double> row_in_batches(std::size_t index,
+                                                   std::size_t row) const override;
+  void set_in_batches(std::size_t index, std::size_t row, std::size_t offset,
+                      double number) override;
+  void renumber_in_batches(std::span<const int> numbers) override;
 
   std::vector<detail::SensorEvaluation<S>> evaluations_;           ///< of each sensor
   std::vector<std::shared_ptr<const detail::TermCode<S>>> codes_;  ///< of each term

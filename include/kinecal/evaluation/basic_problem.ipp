@@ -44,13 +44,19 @@ void BasicProblem<S>::add_to_batch(std::size_t index, const detail::SampleLayout
 }
 
 template <class S>
-std::vector<int> BasicProblem<S>::renumber_in_batches(std::span<const int> numbers) {
-  std::vector<int> left;
-  for (detail::Batches<S>& batches : batches_) {
-    batches = batches.renumbered(numbers);
-    left.push_back(batches.num_samples());
-  }
-  return left;
+std::vector<double> BasicProblem<S>::row_in_batches(std::size_t index, std::size_t row) const {
+  return batches_[index].row(row);
+}
+
+template <class S>
+void BasicProblem<S>::set_in_batches(std::size_t index, std::size_t row, std::size_t offset,
+                                     double number) {
+  batches_[index].set(row, offset, number);
+}
+
+template <class S>
+void BasicProblem<S>::renumber_in_batches(std::span<const int> numbers) {
+  for (detail::Batches<S>& batches : batches_) batches = batches.renumbered(numbers);
 }
 
 template <class S>

@@ -6,17 +6,19 @@
 #include "kinecal/sensors/built_in_sensor.hpp"
 
 #ifndef KINECAL_HEADER_ONLY
+/// Instances of all sensors of BuiltInSensor, declared (`extern`) or defined.
+#define KINECAL_SENSOR_CODE(storage)                                           \
+  storage template class SensorCodeOf<ChainPoint, Packet>;                     \
+  storage template class SensorCodeOf<ChainPose, Packet>;                      \
+  storage template class SensorCodeOf<BentBoard, Packet>;                      \
+  storage template class SensorCodeOf<DepthCamera, Packet>;                    \
+  storage template class SensorCodeOf<LensCamera<PlumbBob>, Packet>;           \
+  storage template class SensorCodeOf<LensCamera<RationalPolynomial>, Packet>; \
+  storage template class SensorCodeOf<LensCamera<ThinPrism>, Packet>;          \
+  storage template class SensorCodeOf<LensCamera<Equidistant>, Packet>;        \
+  storage template class SensorCodeOf<LensCamera<DoubleSphere>, Packet>
+
 namespace kinecal::detail {
-
-extern template class SensorCodeOf<ChainPoint, Packet>;
-extern template class SensorCodeOf<ChainPose, Packet>;
-extern template class SensorCodeOf<BentBoard, Packet>;
-extern template class SensorCodeOf<DepthCamera, Packet>;
-extern template class SensorCodeOf<LensCamera<PlumbBob>, Packet>;
-extern template class SensorCodeOf<LensCamera<RationalPolynomial>, Packet>;
-extern template class SensorCodeOf<LensCamera<ThinPrism>, Packet>;
-extern template class SensorCodeOf<LensCamera<Equidistant>, Packet>;
-extern template class SensorCodeOf<LensCamera<DoubleSphere>, Packet>;
-
+KINECAL_SENSOR_CODE(extern);
 }  // namespace kinecal::detail
 #endif

@@ -6,16 +6,6 @@
 
 #ifndef KINECAL_HEADER_ONLY
 namespace kinecal::detail {
-
-template class SensorCodeOf<ChainPoint, Packet>;
-template class SensorCodeOf<ChainPose, Packet>;
-template class SensorCodeOf<BentBoard, Packet>;
-template class SensorCodeOf<DepthCamera, Packet>;
-template class SensorCodeOf<LensCamera<PlumbBob>, Packet>;
-template class SensorCodeOf<LensCamera<RationalPolynomial>, Packet>;
-template class SensorCodeOf<LensCamera<ThinPrism>, Packet>;
-template class SensorCodeOf<LensCamera<Equidistant>, Packet>;
-template class SensorCodeOf<LensCamera<DoubleSphere>, Packet>;
-
+KINECAL_SENSOR_CODE();
 }  // namespace kinecal::detail
 #endif

@@ -132,6 +132,7 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
         detail::TermViews<S> views{&term, {}, &state.own, state.runs[l]};
         views.precisions = batches.of_term(b, place.precisions);
         views.conditions = batches.of_term(b, place.conditions);
+        views.conditions_step = place.conditions_step;
         for (std::size_t i = 0; i < term.sensors.size(); ++i) {
           views.sensors[i] = &worker.views[static_cast<std::size_t>(term.sensors[i])];
         }

@@ -21,7 +21,7 @@
 #include "kinecal/evaluation/parallel.hpp"
 #include "kinecal/explain/refit.ipp"
 #include "kinecal/geometry/median.hpp"
-#include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/parameters/joint_models/joint_models.hpp"
 #include "kinecal/text/first_names.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/judge_files.hpp"

@@ -18,7 +18,7 @@
 #pragma once
 
 #include "kinecal/parameters/chain_parameters.hpp"
-#include "kinecal/parameters/joint_model.hpp"
+#include "kinecal/parameters/joint_models/joint_model.hpp"
 #include "kinecal/parameters/parameter.hpp"
 #include "kinecal/text/fixed_string.hpp"
 
@@ -150,7 +150,7 @@ struct OwnedParameters {
 
 // Distinct types, not aliases: compilers print these names.
 
-/// Parameters of joint models (parameters/joint_model.hpp): "gear_ratio", "eccentric_sin",
+/// Parameters of joint models (parameters/joint_models/joint_model.hpp): "gear_ratio", "eccentric_sin",
 /// "coupling_shoulder".
 template <FixedString Joint, FixedString... Parts>
 struct JointModelParameters : OwnedParameters<ParameterKind::joint_model, Joint, Parts...> {};

@@ -8,7 +8,7 @@
 //   <camera>_fx _fy _cx _cy  relative change of an intrinsic: f = f0 (1 + v)  1
 //   <camera>_z_offset        z = (z0 + z_offset) (1 + z_scaling)              m
 //   <camera>_z_scaling                                                        1
-//   <camera>_z_quadratic ... further terms of depth: sensors/depth_polynomial.hpp  1/m, 1
+//   <camera>_z_quadratic ... further terms of depth: sensors/depth/depth_polynomial.hpp  1/m, 1
 //   <sensor>_<parameter>     what a sensor declares
 //   <block>_<parameter>      what an error block declares
 // SPDX-License-Identifier: Apache-2.0

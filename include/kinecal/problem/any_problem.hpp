@@ -77,6 +77,12 @@ class AnyProblem {
   /// Leaves samples out, as if they had never been added; the others move up.
   /// @param samples  their numbers, from 0; any order
   void exclude(const std::set<int>& samples);
+  /// Replaces what a sensor observed in a sample, as when points are associated anew: points, orientations, camera_info
+  /// and conditions.  Frames, sigmas and joints stay.  Make new evaluators afterwards.
+  /// @param seen  as many features as were added, in the same frames and in the order of paired()
+  /// @throws SampleError            with the sample and what differs; then nothing changes
+  /// @throws std::invalid_argument  if there is no such sensor
+  void set_measurements(int sample, const Observation& seen);
   /// Sets the noise of an error block: its weight changes in proportion to 1 / sigma.
   /// @param sigma  standard deviation of a residual, in its unit; positive
   void set_sigma(int term, double sigma);
@@ -186,10 +192,17 @@ class AnyProblem {
   /// @param index  of its layout; layouts are numbered in order of first use
   virtual void add_to_batch(std::size_t index, const detail::SampleLayout& layout,
                             std::span<const double> numbers) = 0;
+  /// The numbers of a sample in its batch.
+  /// @param index  of its layout
+  /// @param row    of the sample among those of the layout
+  [[nodiscard]] virtual std::vector<double> row_in_batches(std::size_t index,
+                                                           std::size_t row) const = 0;
+  /// Changes one of them.
+  virtual void set_in_batches(std::size_t index, std::size_t row, std::size_t offset,
+                              double number) = 0;
   /// Gives the samples in the batches other numbers, and removes some.
   /// @param numbers  of each sample: its new number, or -1 to remove it
-  /// @returns  how many are left of each layout, by index
-  virtual std::vector<int> renumber_in_batches(std::span<const int> numbers) = 0;
+  virtual void renumber_in_batches(std::span<const int> numbers) = 0;
 
   [[nodiscard]] const MountedSensor& sensor(int s) const {
     return sensors_[static_cast<std::size_t>(s)];
@@ -216,10 +229,19 @@ class AnyProblem {
   std::vector<Term> terms_;
   std::vector<PriorTerm> priors_;
 
+  /// A layout and how many samples have it.
+  struct LayoutUse {
+    std::size_t index = 0;  ///< in order of first use
+    int samples = 0;        ///< number of them
+  };
+  using Layouts = std::map<detail::SampleLayout, LayoutUse>;
+
   /// What is known of a sample beside its numbers.
   struct AddedSample {
-    std::string source;  ///< "samples.yaml:37"
-    int residuals = 0;   ///< of all features
+    std::string source;                           ///< "samples.yaml:37"
+    const Layouts::value_type* layout = nullptr;  ///< its layout
+    std::size_t row = 0;                          ///< its place among the samples of the layout
+    int residuals = 0;                            ///< of all features
     std::uint64_t fingerprint = 0;
     UnusedInput unused = {};
     /// Of a term: the features that it compares, unless they are 0, 1, 2 ... without ids.
@@ -227,13 +249,7 @@ class AnyProblem {
   };
   std::vector<AddedSample> samples_;
   int residuals_ = 0;  ///< of all samples
-
-  /// A layout and how many samples have it.
-  struct LayoutUse {
-    std::size_t index = 0;  ///< in order of first use
-    int samples = 0;        ///< number of them
-  };
-  std::map<detail::SampleLayout, LayoutUse> layouts_;
+  Layouts layouts_;
 };
 
 }  // namespace kinecal

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -148,25 +149,69 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
   return labels;
 }
 
-/// The values of the sample's conditions that a term takes.
-[[nodiscard]] inline std::vector<double> conditions_of(const Term& term, const Sample& sample) {
-  std::vector<double> values;
-  for (const std::string_view wanted : term.conditions) {
-    const std::string name(wanted);
-    const auto found = sample.conditions.find(name);
-    if (found == sample.conditions.end()) {
-      std::vector<std::string> names;
-      for (const auto& [known, value] : sample.conditions) names.push_back(known);
-      throw SampleError("error block '" + term.name + "': condition '" + name +
-                        "' is not in the sample" + did_you_mean(name, names));
-    }
-    if (!std::isfinite(found->second)) {
-      throw SampleError("error block '" + term.name + "': condition '" + name +
-                        "' is not a finite number");
-    }
-    values.push_back(found->second);
+/// The conditions that a term takes in a sample.
+struct TermConditions {
+  std::vector<double> values;  ///< in the order of the block: of each feature, or of the sample
+  std::size_t step = 0;        ///< number of those of a feature; zero: they are the sample's
+};
+
+/// One condition of a feature: of the first sensor that has it there, else of the sample; NaN if neither has it.
+[[nodiscard]] inline double condition_of(const std::string& name,
+                                         const std::vector<const Observation*>& seen,
+                                         const Sample& sample, std::size_t feature) {
+  for (const Observation* of_sensor : seen) {
+    const auto& own = of_sensor->features[feature].conditions;
+    if (const auto found = own.find(name); found != own.end()) return found->second;
   }
-  return values;
+  const auto found = sample.conditions.find(name);
+  return found == sample.conditions.end() ? std::numeric_limits<double>::quiet_NaN()
+                                          : found->second;
+}
+
+/// The conditions that a term takes in a sample.
+/// @param sample    its features paired
+/// @param compared  the features that the term compares
+[[nodiscard]] inline TermConditions conditions_of(const Term& term,
+                                                  const std::vector<MountedSensor>& sensors,
+                                                  const Sample& sample,
+                                                  const std::vector<std::size_t>& compared) {
+  TermConditions all;
+  std::vector<const Observation*> seen;
+  std::size_t features = 1;
+  for (const int s : term.sensors) {
+    const auto& mount = sensors[static_cast<std::size_t>(s)].mount();
+    if (!term.pairs_features() || term.conditions.empty()) break;
+    seen.push_back(sample.observation(mount.name));
+    features = seen.back()->features.size();
+    const auto has_some = [](const Feature& feature) { return !feature.conditions.empty(); };
+    if (std::any_of(seen.back()->features.begin(), seen.back()->features.end(), has_some)) {
+      all.step = term.conditions.size();
+    }
+  }
+  if (all.step == 0) seen.clear(), features = 1;
+  all.values.assign(features * term.conditions.size(), 0.0);
+  for (const std::size_t i : all.step == 0 ? std::vector<std::size_t>{0} : compared) {
+    for (std::size_t k = 0; k < term.conditions.size(); ++k) {
+      const std::string name(term.conditions[k]);
+      const double value = condition_of(name, seen, sample, i);
+      all.values[i * all.step + k] = value;
+      if (std::isfinite(value)) continue;
+      std::set<std::string> names;
+      for (const auto& [known, number] : sample.conditions) names.insert(known);
+      for (const Observation* of_sensor : seen) {
+        for (const auto& [known, number] : of_sensor->features[i].conditions) names.insert(known);
+      }
+      std::string whose = "the sample";
+      if (all.step > 0) {
+        whose = FeatureLabel{static_cast<int>(i), seen[0]->features[i].id}.text() + " or " + whose;
+      }
+      const std::vector<std::string> known(names.begin(), names.end());
+      throw SampleError(
+          "error block '" + term.name + "': condition '" + name + "' is not " +
+          (names.contains(name) ? "a finite number" : "in " + whose + did_you_mean(name, known)));
+    }
+  }
+  return all;
 }
 
 /// Why the features of a sensor in one sample do not determine a plane; empty if they do.
@@ -236,7 +281,9 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
 using ComparedFeatures = std::map<int, std::vector<std::size_t>>;
 
 /// Packs the inputs of the applicable terms.
+/// @param sample  its features paired
 [[nodiscard]] inline SampleRow row_of(const std::vector<Term>& terms,
+                                      const std::vector<MountedSensor>& sensors,
                                       const ComparedFeatures& compared, const Sample& sample,
                                       const Observed& observed) {
   const auto term = [&](int t) -> const Term& { return terms[static_cast<std::size_t>(t)]; };
@@ -247,7 +294,8 @@ using ComparedFeatures = std::map<int, std::vector<std::size_t>>;
   SampleRow row;
   for (std::size_t s = 0; s < used.size(); ++s) row.add_sensor(used[s] ? &*observed[s] : nullptr);
   for (const auto& [t, features] : compared) {
-    row.add_term(t, precisions_of(term(t), observed), conditions_of(term(t), sample));
+    const TermConditions conditions = conditions_of(term(t), sensors, sample, features);
+    row.add_term(t, precisions_of(term(t), observed), conditions.values, conditions.step);
   }
   return row;
 }
@@ -321,7 +369,7 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
       auto features = detail::compared_features(term(t), sensors_, sample, observed);
       if (!features.empty()) compared.emplace(t, std::move(features));
     }
-    row = detail::row_of(terms_, compared, sample, observed);
+    row = detail::row_of(terms_, sensors_, compared, in_order ? *in_order : sample, observed);
   } catch (const SampleError& e) {
     throw SampleError(source + ": " + e.what());
   }
@@ -334,11 +382,13 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
                                     in_order ? *in_order->observation(first) : *recorded);
     if (!labels.empty()) added.labels.emplace(t, std::move(labels));
   }
-  auto& [layout, use] =
+  Layouts::value_type& known =
       *layouts_.try_emplace(std::move(row.layout), LayoutUse{layouts_.size()}).first;
+  auto& [layout, use] = known;
   add_to_batch(use.index, layout, row.numbers);
+  added.layout = &known;
   added.fingerprint = detail::fingerprint_of(use.index, row.numbers);
-  ++use.samples;
+  added.row = static_cast<std::size_t>(use.samples++);
   residuals_ += added.residuals;
   samples_.push_back(std::move(added));
   if (own_poses_.empty()) return;
@@ -366,8 +416,63 @@ KINECAL_INLINE void AnyProblem::exclude(const std::set<int>& samples) {
   }
   samples_ = std::move(kept);
   poses_of_samples_ = std::move(poses);
-  const std::vector<int> left = renumber_in_batches(numbers);
-  for (auto& [layout, use] : layouts_) use.samples = left[use.index];
+  renumber_in_batches(numbers);
+  for (auto& [layout, use] : layouts_) use.samples = 0;
+  for (AddedSample& sample : samples_) {
+    sample.row = static_cast<std::size_t>(layouts_.at(sample.layout->first).samples++);
+  }
+}
+
+KINECAL_INLINE void AnyProblem::set_measurements(int sample, const Observation& seen) {
+  const auto s = static_cast<std::size_t>(sensor_index(seen.sensor));
+  AddedSample& changed = samples_[static_cast<std::size_t>(sample)];
+  const auto& [layout, use] = *changed.layout;
+  const auto require = [&](bool is_right, const std::string& what) {
+    if (!is_right) {
+      throw SampleError(changed.source + ": sensor '" + seen.sensor + "': " + what);
+    }
+  };
+  require(layout.sensors[s].has_value(), "no error block compares what it observed");
+  const detail::ObservationLayout& known = *layout.sensors[s];
+  detail::ObservationNumbers numbers;
+  try {
+    numbers = sensors_[s].measurements(seen);
+  } catch (const SampleError& e) {
+    throw SampleError(changed.source + ": " + e.what());
+  }
+  require(numbers.chain == known.chain,
+          "its measurements can be replaced by as many in the same frames only");
+  const std::vector<double> before = row_in_batches(use.index, changed.row);
+  std::vector<double> row = before;
+  const auto set = [&](std::size_t offset, std::span<const double> values) {
+    std::copy(values.begin(), values.end(), row.begin() + static_cast<std::ptrdiff_t>(offset));
+  };
+  set(known.settings, numbers.settings);
+  set(known.measured, numbers.measured);
+  for (std::size_t i = 0; i < numbers.usable.size(); ++i) {
+    require(row[known.usable + i * known.usable_step] == numbers.usable[i],
+            FeatureLabel{static_cast<int>(i), seen.features[i].id}.text() +
+                (numbers.usable[i] > 0.0 ? " was not a number before" : " is not a number"));
+  }
+  for (const detail::TermLayout& of_term : layout.terms) {
+    const Term& used = term(of_term.term);
+    const bool is_its = std::find(used.sensors.begin(), used.sensors.end(), static_cast<int>(s)) !=
+                        used.sensors.end();
+    for (std::size_t i = 0; is_its && i < seen.features.size(); ++i) {
+      for (std::size_t k = 0; k < used.conditions.size(); ++k) {
+        const auto value = seen.features[i].conditions.find(std::string(used.conditions[k]));
+        if (value == seen.features[i].conditions.end()) continue;
+        require(of_term.conditions_step > 0, "its features had no conditions before");
+        require(std::isfinite(value->second),
+                "condition '" + value->first + "' is not a finite number");
+        row[of_term.conditions + i * of_term.conditions_step + k] = value->second;
+      }
+    }
+  }
+  for (std::size_t offset = 0; offset < row.size(); ++offset) {
+    if (row[offset] != before[offset]) set_in_batches(use.index, changed.row, offset, row[offset]);
+  }
+  changed.fingerprint = detail::fingerprint_of(use.index, row);
 }
 
 KINECAL_INLINE FeatureLabel AnyProblem::feature(int term, int sample, std::ptrdiff_t i) const {

@@ -104,17 +104,22 @@ class Batches {
   /// @param numbers  of each sample of the problem: its new number, or -1 to leave it out
   [[nodiscard]] Batches renumbered(std::span<const int> numbers) const {
     Batches kept(layout_);
-    std::vector<double> row(layout_.size);
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       const int number = numbers[static_cast<std::size_t>(samples_[i])];
-      if (number < 0) continue;
-      const S* const batch = numbers_.data() + i / kLanes<S> * layout_.size;
-      for (std::size_t k = 0; k < row.size(); ++k) {
-        row[k] = lane(batch[k], static_cast<int>(i % kLanes<S>));
-      }
-      kept.add(number, row);
+      if (number >= 0) kept.add(number, row(i));
     }
     return kept;
+  }
+
+  /// The numbers of a sample.
+  /// @param row  of the sample, in the order in which they were added
+  [[nodiscard]] std::vector<double> row(std::size_t row) const {
+    const S* const batch = numbers_.data() + row / kLanes<S> * layout_.size;
+    std::vector<double> numbers(layout_.size);
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      numbers[k] = lane(batch[k], static_cast<int>(row % kLanes<S>));
+    }
+    return numbers;
   }
 
   /// Changes a number of a sample.

@@ -60,7 +60,10 @@ class MountedSensor {
   /// @param values  of all parameters of the table
   [[nodiscard]] std::vector<double> own_values(ParameterValues values) const;
 
-  /// What the sensor observed in a sample, as numbers.
+  /// What the sensor observed, as numbers, without the chains' joints.
+  /// @throws SampleError  with what is missing or wrong
+  [[nodiscard]] detail::ObservationNumbers measurements(const Observation& seen) const;
+  /// The same in a sample, with the joints of the chains that lead to its features.
   /// @throws SampleError  with what is missing or wrong
   [[nodiscard]] detail::ObservationNumbers numbers(const Sample& sample,
                                                    const Observation& seen) const;

@@ -54,14 +54,21 @@ KINECAL_INLINE std::vector<double> MountedSensor::own_values(ParameterValues val
 
 KINECAL_INLINE detail::ObservationNumbers MountedSensor::numbers(const Sample& sample,
                                                                  const Observation& seen) const {
+  detail::ObservationNumbers all = measurements(seen);
+  for (const std::size_t chain : all.chain) {
+    if (!all.joints[chain]) all.joints[chain] = joints(sample, chain);
+  }
+  return all;
+}
+
+KINECAL_INLINE detail::ObservationNumbers MountedSensor::measurements(
+    const Observation& seen) const {
   detail::ObservationNumbers all;
   all.joints.resize(chains_.size());
   try {
     all.settings = sensor_->settings(seen);
     for (const Feature& feature : seen.features) {
-      const std::size_t chain = chain_to(feature.frame);
-      if (!all.joints[chain]) all.joints[chain] = joints(sample, chain);
-      all.chain.push_back(chain);
+      all.chain.push_back(chain_to(feature.frame));
       add_feature(feature, all);
     }
   } catch (const SettingsError& e) {

@@ -33,9 +33,9 @@ KINECAL_INLINE void SampleRow::add_sensor(const ObservationNumbers* seen) {
 }
 
 KINECAL_INLINE void SampleRow::add_term(int term, const std::vector<double>& precisions,
-                                        const std::vector<double>& conditions) {
+                                        const std::vector<double>& conditions, std::size_t step) {
   const std::size_t of_features = precisions.empty() ? kAbsent : append(precisions);
-  layout.terms.push_back({term, of_features, append(conditions)});
+  layout.terms.push_back({term, of_features, append(conditions), step});
 }
 
 }  // namespace kinecal::detail

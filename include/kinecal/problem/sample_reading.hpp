@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "kinecal/kinematics/gravity_load.hpp"
-#include "kinecal/parameters/joint_model.hpp"
+#include "kinecal/parameters/joint_models/joint_model.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/text/nearest_name.hpp"
 

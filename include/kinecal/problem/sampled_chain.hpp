@@ -8,7 +8,7 @@
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/parameters/chain_parameters.hpp"
-#include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/parameters/joint_models/joint_models.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {

@@ -85,7 +85,7 @@ struct Term {
   std::vector<int> sensors = {};              ///< indices in the problem of those that are compared
   std::vector<int> parameters = {};           ///< table indices of the block's own parameters
   std::span<const Quantity> quantities = {};  ///< the block's input from each of its sensors
-  /// Names of the sample's conditions that the block takes.
+  /// Names of the conditions, of a feature or its sample, that the block takes.
   std::span<const std::string_view> conditions = {};
   int feature_size = 1;  ///< number of residuals of one feature
   /// Of a block of poses that has scales: its residuals are distances and angles; empty for others.

@@ -30,6 +30,9 @@ struct Feature {
   /// Identifies the feature on its target, from 0: the corner of a board, the tag.  Error blocks
   /// pair features of several sensors by id, or by place in the list if there are no ids.
   std::optional<int> id = {};
+  /// Further numbers of the feature, by name: the normal of a surface there, a temperature.  Error blocks name those
+  /// they take; one of the feature comes before the sample's of the same name.
+  std::map<std::string, double> conditions = {};
 };
 
 /// The settings of a camera during recording: sensor_msgs/CameraInfo and the depth driver's.

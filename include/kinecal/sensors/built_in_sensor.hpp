@@ -1,4 +1,5 @@
-// The sensors that the library has compiled.  A new one for everyone is its header and its name here.
+// The sensors that the library has compiled.  A new one for everyone is its header, its name here and in
+// evaluation/built_in_sensors.hpp; a lens has its name in lenses.hpp instead.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,16 +9,22 @@
 #include "kinecal/sensors/any_sensor.hpp"
 #include "kinecal/sensors/bent_board.hpp"
 #include "kinecal/sensors/chain_point.hpp"
-#include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/sensors/depth/depth_camera.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
 
 namespace kinecal {
 
+namespace detail {
+template <class Lenses>
+struct SensorsWith;
+template <class... Ls>
+struct SensorsWith<LensList<Ls...>> {
+  using type = std::variant<ChainPoint, DepthCamera, LensCamera<Ls>..., BentBoard, ChainPose>;
+};
+}  // namespace detail
+
 /// A sensor of a built-in type; configurations name it by its kType.
-using BuiltInSensor =
-    std::variant<ChainPoint, DepthCamera, LensCamera<PlumbBob>, LensCamera<RationalPolynomial>,
-                 LensCamera<ThinPrism>, LensCamera<Equidistant>, LensCamera<DoubleSphere>,
-                 BentBoard, ChainPose>;
+using BuiltInSensor = detail::SensorsWith<Lenses>::type;
 
 /// A camera by the name of its lens: lens_of() or lens_named().
 /// @throws std::invalid_argument  if there is no such lens

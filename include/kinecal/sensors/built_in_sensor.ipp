@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "kinecal/sensors/built_in_sensor.hpp"
 
 namespace kinecal {
@@ -11,11 +13,12 @@ KINECAL_INLINE std::shared_ptr<const AnySensor> any_built_in(const BuiltInSensor
 }
 
 KINECAL_INLINE BuiltInSensor lens_camera(std::string_view lens, ImageKind image) {
-  if (lens == PlumbBob::kName) return LensCamera<PlumbBob>{image};
-  if (lens == RationalPolynomial::kName) return LensCamera<RationalPolynomial>{image};
-  if (lens == ThinPrism::kName) return LensCamera<ThinPrism>{image};
-  if (lens == Equidistant::kName) return LensCamera<Equidistant>{image};
-  if (lens == DoubleSphere::kName) return LensCamera<DoubleSphere>{image};
+  std::optional<BuiltInSensor> camera;
+  const auto add = [&]<class... Ls>(LensList<Ls...>) {
+    ((lens == Ls::kName ? (void)camera.emplace(LensCamera<Ls>{image}) : (void)0), ...);
+  };
+  add(Lenses());
+  if (camera) return *camera;
   throw std::invalid_argument("there is no lens '" + std::string(lens) + "'");
 }
 

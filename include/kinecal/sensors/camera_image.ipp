@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "kinecal/sensors/camera_image.hpp"
-#include "kinecal/sensors/lens_names.hpp"
+#include "kinecal/sensors/lenses/lens_names.hpp"
 #include "kinecal/sensors/sensor.hpp"
 
 namespace kinecal {

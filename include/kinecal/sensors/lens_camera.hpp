@@ -17,11 +17,8 @@
 #include <utility>
 
 #include "kinecal/sensors/camera_image.hpp"
-#include "kinecal/sensors/double_sphere.hpp"
-#include "kinecal/sensors/equidistant.hpp"
-#include "kinecal/sensors/lens_names.hpp"
-#include "kinecal/sensors/plumb_bob.hpp"
-#include "kinecal/sensors/rational_polynomial.hpp"
+#include "kinecal/sensors/lenses/lens_names.hpp"
+#include "kinecal/sensors/lenses/lenses.hpp"
 #include "kinecal/sensors/sensor.hpp"
 
 namespace kinecal {
@@ -156,7 +153,7 @@ struct LensCamera {
     const S fx = s[0] * (1.0 + v[0]), fy = s[1] * (1.0 + v[1]);
     const Eigen::Matrix<S, 2, 1> at((m.point.x() - s[2] * (1.0 + v[2])) / fx,
                                     (m.point.y() - s[3] * (1.0 + v[3])) / fy);
-    const Sight<S> seen = L::sight(at, d);
+    const Sight<S> seen = detail::sight_of<L>(at, d);
     Ray<S> ray{.direction = seen.direction};
     for (int i = 0; i < 3; ++i) {
       ray.by_u(i) = seen.by_x(i) / fx;

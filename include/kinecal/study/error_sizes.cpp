@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/study/error_sizes.hpp"
 
-#include "kinecal/sensors/depth_polynomial.hpp"
+#include "kinecal/sensors/depth/depth_polynomial.hpp"
 
 namespace kinecal {
 

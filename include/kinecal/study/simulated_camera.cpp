@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/sensors/depth_polynomial.hpp"
-#include "kinecal/sensors/lens_names.hpp"
+#include "kinecal/sensors/depth/depth_polynomial.hpp"
+#include "kinecal/sensors/lenses/lens_names.hpp"
 
 namespace kinecal {
 

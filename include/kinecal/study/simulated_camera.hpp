@@ -1,7 +1,7 @@
 // A simulated camera: its true lens, which differs from its camera_info, and its imaging errors.
 //
 //   depth, as the driver reports it: z1 / (1 + z_scaling) - z_offset + noise z^2, in steps of
-//   disparity; z1 is the depth z before the polynomial of sensors/depth_polynomial.hpp
+//   disparity; z1 is the depth z before the polynomial of sensors/depth/depth_polynomial.hpp
 //
 // The parameters are those of camera2d and camera3d, which correct for them.
 // SPDX-License-Identifier: Apache-2.0
@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "kinecal/capture/view.hpp"
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/study/seeded_random.hpp"
 
 namespace kinecal {

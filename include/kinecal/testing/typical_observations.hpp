@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/sensors/lens_names.hpp"
+#include "kinecal/sensors/lenses/lens_names.hpp"
 #include "kinecal/sensors/sensor.hpp"
 #include "kinecal/testing/random_input.hpp"
 

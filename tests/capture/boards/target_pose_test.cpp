@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/study/seeded_random.hpp"
 #include "support/board_images.hpp"
 

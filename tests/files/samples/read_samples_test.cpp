@@ -22,6 +22,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Pair;
 using ::testing::StartsWith;
 
 struct ReadText {
@@ -454,6 +455,21 @@ TEST(ReadSamples, ASampleMayHaveConditionsOfAnyName) {
                {"conditions", "expected a word or number, found a list"});
   expect_error(with("{load: 1, load: 2}"), 2, {"conditions", "'load' occurs twice"});
   expect_error(with("23.5"), 2, {"conditions", "'23.5' is not a map"});
+}
+
+TEST(ReadSamples, AFeatureMayHaveConditionsOfItsOwn) {
+  const auto with = [](const std::string& conditions) {
+    std::string arm = kArm;
+    return kJoints + "conditions: {load: 2}\n" +
+           arm.replace(arm.find("}}"), 2, "}, conditions: " + conditions + "}") + "---\n";
+  };
+  const ReadText reading = read_text(with("{nx: 0.6, load: 1}") + with("{}"));
+  ASSERT_THAT(reading.diagnostics.errors, IsEmpty());
+  const auto& feature = reading.samples.at(0).observations[0].features[0];
+  EXPECT_THAT(feature.conditions, ElementsAre(Pair("load", 1.0), Pair("nx", 0.6)));
+  EXPECT_THAT(reading.samples[0].conditions, ElementsAre(Pair("load", 2.0)));
+  EXPECT_THAT(reading.samples.at(1).observations[0].features[0].conditions, IsEmpty());
+  expect_error(with("{nx: 1, nx: 2}"), 5, {"conditions", "'nx' occurs twice"});
 }
 
 TEST(ReadSamples, ASampleMayHaveMeasuredPosesOfFloatingJoints) {

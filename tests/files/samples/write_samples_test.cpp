@@ -62,6 +62,7 @@ void expect_same(const Sample& a, const Sample& b) {
       EXPECT_EQ(x.features[j].point, y.features[j].point);
       EXPECT_EQ(x.features[j].sigma, y.features[j].sigma);
       EXPECT_EQ(x.features[j].id, y.features[j].id);
+      EXPECT_EQ(x.features[j].conditions, y.features[j].conditions);
     }
     ASSERT_EQ(x.camera.has_value(), y.camera.has_value());
     if (x.camera) expect_same(*x.camera, *y.camera);
@@ -92,6 +93,7 @@ std::vector<Sample> difficult_samples() {
     sample.observations.push_back({"arm", {{"", {-0.0, 1.0, number()}}, {"null", {}}}});
     sample.observations.push_back({"empty", {}});
     sample.observations[0].features[0].sigma = std::abs(number());
+    sample.observations[0].features[0].conditions = {{"nx", number()}, {"with: space", number()}};
     sample.observations[1].features[1].id = static_cast<int>(random() % 2147483648u);
     sample.conditions = {{"temperature", number()}, {"7", number()}, {"with: space", number()}};
   }

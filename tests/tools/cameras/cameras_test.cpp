@@ -6,8 +6,8 @@
 #include <fstream>
 #include <map>
 
-#include "kinecal/sensors/lens.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/tools/cameras/initial_cameras.hpp"
 #include "kinecal/tools/cameras/lens_start.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
 #include "support/cameras_alone.hpp"
 #include "support/lens_fetch.hpp"

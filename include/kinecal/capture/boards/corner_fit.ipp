@@ -14,7 +14,7 @@
 
 #include "kinecal/capture/boards/homography.hpp"
 #include "kinecal/geometry/median.hpp"
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 
 namespace kinecal::detail {
 

@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "kinecal/capture/boards/homography.hpp"
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 
 namespace kinecal {
 

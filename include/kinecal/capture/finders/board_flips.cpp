@@ -10,7 +10,7 @@
 #include "kinecal/capture/boards/homography.hpp"
 #include "kinecal/capture/finders/turn_votes.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 
 namespace kinecal {
 

@@ -17,7 +17,7 @@
 #include "kinecal/capture/session/joint_range.ipp"
 #include "kinecal/capture/session/robot_body.hpp"
 #include "kinecal/kinematics/chain.hpp"
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 
 namespace kinecal {
 

@@ -84,6 +84,7 @@ using RecordedNumbers = std::pair<std::vector<std::string>, std::vector<double>>
     for (const Feature& feature : seen.features) {
       all.first.push_back(feature.frame);
       for (const double number : feature.point) add(number);
+      for (const auto& [name, value] : feature.conditions) add(value);
       if (!feature.rotation) continue;
       for (const double number : feature.rotation->reshaped()) add(number);
     }

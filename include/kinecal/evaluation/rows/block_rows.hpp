@@ -60,9 +60,9 @@ class BlockRows {
   [[nodiscard]] static std::array<S, kOwn> own_values(const Views& views) {
     return own_constants<kOwn, S>(views.own->values);
   }
-  [[nodiscard]] static ConditionsOf<B, S> conditions(const Views& views) {
+  [[nodiscard]] static ConditionsOf<B, S> conditions(const Views& views, std::size_t i) {
     ConditionsOf<B, S> all;
-    std::copy_n(views.conditions, all.size(), all.begin());
+    std::copy_n(views.conditions + i * views.conditions_step, all.size(), all.begin());
     return all;
   }
   /// Adds the columns of the block's own parameters.
@@ -93,17 +93,19 @@ class BlockRows {
   /// The vectors of all sensors.
   using Values = std::array<const Vector3<S>*, kBodies>;
 
-  [[nodiscard]] static auto call(const B& block, const Values& values, const Views& views) {
+  [[nodiscard]] static auto call(const B& block, const Values& values, const Views& views,
+                                 std::size_t i) {
     return [&]<std::size_t... I>(std::index_sequence<I...>) {
-      return call_block<B, S>(block, own_values(views), conditions(views),
+      return call_block<B, S>(block, own_values(views), conditions(views, i),
                               Vectors<I>::template plain<S>(values[I])...);
     }
     (std::make_index_sequence<kBodies>{});
   }
-  [[nodiscard]] static auto call_jets(const B& block, const Values& values, const Views& views) {
+  [[nodiscard]] static auto call_jets(const B& block, const Values& values, const Views& views,
+                                      std::size_t i) {
     return [&]<std::size_t... I>(std::index_sequence<I...>) {
       return call_block<B, J>(block, own_jets<kOwn, J, S>(views.own->values, kFirst[kBodies]),
-                              conditions(views),
+                              conditions(views, i),
                               Vectors<I>::template jets<J, S>(values[I], kFirst[I])...);
     }
     (std::make_index_sequence<kBodies>{});
@@ -115,11 +117,11 @@ class BlockRows {
     Values values;
     for (std::size_t s = 0; s < kBodies; ++s) values[s] = views[s].values(i);
     if constexpr (!kDerivatives) {
-      rows.residual = call(block, values, views);
+      rows.residual = call(block, values, views, i);
     } else {
       std::array<Vector3<S>, 4> moved;
-      if (at == Linearization::error_free) take_residual_away(block, views, values, moved);
-      const auto r = call_jets(block, values, views);
+      if (at == Linearization::error_free) take_residual_away(block, views, i, values, moved);
+      const auto r = call_jets(block, values, views, i);
       rows.residual = values_of(r);
       unrolled<kBodies>([&](auto s) { add_sensor<s>(views[s], i, values[s], r, rows); });
       add_own(views, r, kFirst[kBodies], rows);
@@ -152,11 +154,11 @@ class BlockRows {
 
   /// Changes a measurement so that the residual becomes zero: one Newton step, exact if the block
   /// is linear.  Changes the first sensor that has parameters, else the last one.
-  static void take_residual_away(const B& block, const Views& views, Values& values,
+  static void take_residual_away(const B& block, const Views& views, std::size_t i, Values& values,
                                  std::array<Vector3<S>, 4>& moved) {
     std::size_t measuring = 0;
     while (measuring + 1 < kBodies && !views[measuring].code().measures()) ++measuring;
-    const auto r = call_jets(block, values, views);
+    const auto r = call_jets(block, values, views, i);
     unrolled<kBodies>([&](auto s) {
       if (s == measuring) move_measurement<kInputs[s], kFirst[s]>(r, values[s], moved);
     });
@@ -175,14 +177,14 @@ class BlockRows {
     camera.code().predict(camera.observation(), p_camera, camera.own().values, camera.own().free,
                           kDerivatives, pixel);
     if constexpr (!kDerivatives) {
-      rows.residual = call_block<B, S>(block, own_values(views), conditions(views),
+      rows.residual = call_block<B, S>(block, own_values(views), conditions(views, i),
                                        PixelObservation<S>{pixel.value, observed});
     } else {
       using PixelJet = Jet<S, 2 + static_cast<int>(kOwn)>;
       const Eigen::Matrix<PixelJet, 2, 1> predicted(PixelJet(pixel.value(0), 0),
                                                     PixelJet(pixel.value(1), 1));
       const auto r = call_block<B, PixelJet>(
-          block, own_jets<kOwn, PixelJet, S>(views.own->values, 2), conditions(views),
+          block, own_jets<kOwn, PixelJet, S>(views.own->values, 2), conditions(views, i),
           PixelObservation<PixelJet>{predicted, observed});
       rows.residual = values_of(r);
       const Eigen::Matrix<S, kSize, 2> by_pixel = derivatives_by<2>(r, 0);

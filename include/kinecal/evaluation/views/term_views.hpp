@@ -45,6 +45,8 @@ struct TermViews {
   /// Of each feature, lane by lane: 1 / sigma, or 0 if it has none of its own; nullptr: none has one.
   const S* precisions = nullptr;
   const S* conditions = nullptr;  ///< those that the block takes, lane by lane
+  std::size_t conditions_step =
+      0;  ///< from a feature's to the next one's; zero: they are the sample's
 
   [[nodiscard]] const SensorView<S>& operator[](std::size_t s) const { return *sensors[s]; }
 

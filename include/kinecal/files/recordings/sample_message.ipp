@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <string>
@@ -71,7 +72,12 @@ namespace kinecal::detail {
 /// @param texts  keeps names; like the sample, must outlive the message, which refers to them
 [[nodiscard]] inline MessageFields sample_message(const Sample& sample,
                                                   std::deque<std::string>& texts) {
-  if (!sample.conditions.empty()) {
+  const auto has_some = [](const auto& of) { return !of.conditions.empty(); };
+  const bool of_features =
+      std::any_of(sample.observations.begin(), sample.observations.end(), [&](const auto& seen) {
+        return std::any_of(seen.features.begin(), seen.features.end(), has_some);
+      });
+  if (has_some(sample) || of_features) {
     throw OutputError("a message of samples cannot hold conditions; write YAML");
   }
   if (!sample.poses.empty()) {

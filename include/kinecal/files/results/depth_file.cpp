@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "kinecal/files/yaml/yaml_text.hpp"
-#include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/sensors/depth/depth_camera.hpp"
 
 namespace kinecal {
 
@@ -79,7 +79,7 @@ constexpr const char* kDepthFormula = R"(#
 #
 # u, v: pixel; measured: the driver's depth, metres along the optical axis.  fx fy cx cy and recorded_* are
 # the settings while recording: the point is depth times the ray of the calibrated intrinsics.  A driver that has z_offset and
-# z_scaling already gives z1.  kinecal/sensors/true_depth.hpp applies this and needs the standard library only.
+# z_scaling already gives z1.  kinecal/sensors/depth/true_depth.hpp applies this and needs the standard library only.
 )";
 
 }  // namespace

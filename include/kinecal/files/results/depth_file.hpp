@@ -1,5 +1,5 @@
 // The depth correction of a camera as a file, depth_correction_<camera>.yaml: for drivers, which know offset and
-// scale at most.  It says its formula; sensors/true_depth.hpp applies it.
+// scale at most.  It says its formula; sensors/depth/true_depth.hpp applies it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@
 
 #include "kinecal/problem/mounted_sensor.hpp"
 #include "kinecal/samples/sample.hpp"
-#include "kinecal/sensors/true_depth.hpp"
+#include "kinecal/sensors/depth/true_depth.hpp"
 
 namespace kinecal {
 

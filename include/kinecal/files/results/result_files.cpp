@@ -17,8 +17,8 @@
 #include "kinecal/files/results/result_text.ipp"
 #include "kinecal/files/results/transform_files.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
-#include "kinecal/parameters/joint_models.hpp"
-#include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/parameters/joint_models/joint_models.hpp"
+#include "kinecal/sensors/depth/depth_camera.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "kinecal/files/yaml/yaml_text.hpp"
-#include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/parameters/joint_models/joint_models.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal::detail {

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -91,6 +92,8 @@ class SampleBuilder {
       observation().features.emplace_back();
     } else if (node == SampleNode::pose) {
       pose_ = {};
+    } else if (node == SampleNode::conditions || node == SampleNode::feature_conditions) {
+      of_feature_ = node == SampleNode::feature_conditions;
     } else {
       camera_.begin(node, line);
     }
@@ -109,7 +112,7 @@ class SampleBuilder {
   void key(SampleNode node, int line, std::string_view name) {
     key_ = name;
     const bool is_pose = node == SampleNode::pose;
-    if (!(is_pose ? sample_.poses.contains(key_) : sample_.conditions.contains(key_))) return;
+    if (!(is_pose ? sample_.poses.contains(key_) : conditions().contains(key_))) return;
     errors_.add(line, fmt::format("{}: {} occurs twice", sample_name(node), shown(name)));
   }
 
@@ -142,7 +145,7 @@ class SampleBuilder {
     } else if (node == SampleNode::pose_xyz_item || node == SampleNode::pose_quaternion_item) {
       pose_.number(node, value);
     } else if (node == SampleNode::condition) {
-      sample_.conditions[key_] = value;
+      conditions()[key_] = value;
     } else if (node == SampleNode::sigma) {
       feature().sigma = value;
     } else if (node == SampleNode::id) {
@@ -157,6 +160,9 @@ class SampleBuilder {
  private:
   [[nodiscard]] Observation& observation() { return sample_.observations.back(); }
   [[nodiscard]] Feature& feature() { return observation().features.back(); }
+  [[nodiscard]] std::map<std::string, double>& conditions() {
+    return of_feature_ ? feature().conditions : sample_.conditions;
+  }
 
   void word(SampleNode node, int line, std::string_view text) {
     if (node == SampleNode::joint_name) {
@@ -231,7 +237,8 @@ class SampleBuilder {
   std::size_t joints_ = 0;  ///< of the last sample: the next one probably has as many
   Sample sample_;
   Eigen::Vector4d quaternion_ = Eigen::Vector4d::Zero();  ///< x y z w
-  std::string key_;  ///< name of the last condition, or joint of the last pose
+  std::string key_;          ///< name of the last condition, or joint of the last pose
+  bool of_feature_ = false;  ///< the open map of conditions is a feature's
   SamplePose pose_;
   SampleCamera camera_;
 };
@@ -246,8 +253,9 @@ class SampleBuilder {
 /// @param parent  the map with the key
 [[nodiscard]] inline std::string_view meant_sample_key(SampleNode parent, std::string_view key) {
   constexpr std::size_t kMostLetters = 2;
-  for (const SampleNode own : {SampleNode::poses, SampleNode::conditions, SampleNode::orientation,
-                               SampleNode::sigma, SampleNode::id}) {
+  for (const SampleNode own :
+       {SampleNode::poses, SampleNode::conditions, SampleNode::feature_conditions,
+        SampleNode::orientation, SampleNode::sigma, SampleNode::id}) {
     const SampleNodeRule& rule = sample_rule(own);
     if (rule.parent != parent) continue;
     const NearestName near = NearestName::none(key).or_nearer(rule.key, key);

@@ -8,7 +8,7 @@
 //   - sensor_name: camera
 //     features: [{header: {frame_id: ...}, point: {x: ..., y: ..., z: ...},
 //                 orientation: {x: ..., y: ..., z: ..., w: ...},          (of poses only)
-//                 sigma: ..., id: ...}, ...]                              (if it has them)
+//                 sigma: ..., id: ..., conditions: {nx: ..., ...}}, ...]  (if it has them)
 //     ext_camera_info:
 //       camera_info: {height, width, distortion_model, D, K, R, P, binning_x, binning_y, roi}
 //       parameters: [{name: ..., value: ...}, ...]
@@ -65,6 +65,7 @@ enum class SampleNode : std::uint8_t {
   qw,
   sigma,
   id,
+  feature_conditions,
   ext_camera_info,
   camera_info,
   height,
@@ -147,6 +148,7 @@ struct SampleNodeRule {
       {qw, orientation, number, "w", "", true},
       {sigma, feature, number, "sigma"},
       {id, feature, number, "id"},
+      {feature_conditions, feature, map, "conditions"},
       {ext_camera_info, observation, map, "ext_camera_info"},
       {camera_info, ext_camera_info, map, "camera_info"},
       {height, camera_info, number, "height"},
@@ -215,12 +217,15 @@ inline constexpr auto kSampleChildren = [] {
 
 /// True for a map whose keys are names that the user gives.
 [[nodiscard]] constexpr bool sample_has_free_keys(SampleNode node) {
-  return node == SampleNode::conditions || node == SampleNode::poses;
+  return node == SampleNode::conditions || node == SampleNode::feature_conditions ||
+         node == SampleNode::poses;
 }
 
 /// The node under `parent` with this key; `unknown` if absent.  List items have the key "".
 [[nodiscard]] constexpr SampleNode sample_child(SampleNode parent, std::string_view key) {
-  if (parent == SampleNode::conditions) return SampleNode::condition;
+  if (parent == SampleNode::conditions || parent == SampleNode::feature_conditions) {
+    return SampleNode::condition;  // its parent by the table is the sample's map
+  }
   if (parent == SampleNode::poses) return SampleNode::pose;
   const SampleChildren& children = sample_children(parent);
   for (std::size_t i = 0; i < children.size; ++i) {

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <ostream>
 #include <stdexcept>
 #include <string>
@@ -50,14 +51,14 @@ namespace {
   return all.empty() ? "" : fmt::format("poses: {{{}}}\n", all);
 }
 
-/// Empty for a sample without conditions.
-[[nodiscard]] std::string conditions_to_yaml(const Sample& sample) {
+/// "conditions: {temperature: 21.5}"; empty if there are none.
+[[nodiscard]] std::string conditions_to_yaml(const std::map<std::string, double>& conditions) {
   std::string all;
-  for (const auto& [name, value] : sample.conditions) {
+  for (const auto& [name, value] : conditions) {
     all +=
         fmt::format("{}{}: {}", all.empty() ? "" : ", ", name_to_yaml(name), number_to_yaml(value));
   }
-  return all.empty() ? "" : fmt::format("conditions: {{{}}}\n", all);
+  return all.empty() ? "" : fmt::format("conditions: {{{}}}", all);
 }
 
 [[nodiscard]] std::string feature_to_yaml(const Feature& feature) {
@@ -70,6 +71,7 @@ namespace {
   }
   if (feature.sigma) others += fmt::format(", sigma: {}", number_to_yaml(*feature.sigma));
   if (feature.id) others += fmt::format(", id: {}", *feature.id);
+  if (!feature.conditions.empty()) others += ", " + conditions_to_yaml(feature.conditions);
   return fmt::format("  - {{header: {{frame_id: {}}}, point: {{x: {}, y: {}, z: {}}}{}}}\n",
                      name_to_yaml(feature.frame), number_to_yaml(p.x()), number_to_yaml(p.y()),
                      number_to_yaml(p.z()), others);
@@ -109,7 +111,7 @@ void write_samples(std::ostream& out, const std::vector<Sample>& samples) {
           names, names == 1 ? "" : "s", positions, positions == 1 ? "" : "s"));
     }
     out << detail::joint_states_to_yaml(sample) << detail::poses_to_yaml(sample)
-        << detail::conditions_to_yaml(sample)
+        << detail::conditions_to_yaml(sample.conditions) << (sample.conditions.empty() ? "" : "\n")
         << (sample.observations.empty() ? "observations: []\n" : "observations:\n");
     for (const Observation& o : sample.observations) out << detail::observation_to_yaml(o);
     out << "---\n";

@@ -16,7 +16,7 @@
 #include "kinecal/config/missing_sensors.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/samples/sample.hpp"
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/tools/cameras/known_cameras.ipp"
 #include "kinecal/tools/cameras/target_pairs.ipp"
 

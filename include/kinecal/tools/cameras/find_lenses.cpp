@@ -20,7 +20,7 @@
 #include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/samples/sample.hpp"
-#include "kinecal/sensors/lens_names.hpp"
+#include "kinecal/sensors/lenses/lens_names.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/tools/cameras/camera_places.ipp"
 #include "kinecal/tools/cameras/start_cameras.hpp"

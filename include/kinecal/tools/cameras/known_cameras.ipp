@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/tools/cameras/target_poses.ipp"
 
 namespace kinecal::detail {

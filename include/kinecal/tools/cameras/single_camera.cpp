@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
-#include "kinecal/sensors/lens.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal {

@@ -15,7 +15,7 @@
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/tools/cameras/camera_checks.ipp"
 #include "kinecal/tools/cameras/camera_places.ipp"
 #include "kinecal/tools/cameras/known_cameras.ipp"

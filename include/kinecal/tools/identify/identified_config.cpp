@@ -13,7 +13,7 @@
 #include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/geometry/rpy.hpp"
-#include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/parameters/joint_models/joint_models.hpp"
 #include "kinecal/problem/sample_reading.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/tools/identify/candidates.ipp"

@@ -17,7 +17,7 @@
 #include "kinecal/files/launch/launch_text.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
-#include "kinecal/sensors/depth_polynomial.hpp"
+#include "kinecal/sensors/depth/depth_polynomial.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/tools/install/dates.ipp"
 #include "kinecal/tools/install/launch_folder.ipp"

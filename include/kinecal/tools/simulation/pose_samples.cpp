@@ -13,7 +13,7 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/samples/joint_moves.hpp"
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/study/true_robot.hpp"
 #include "kinecal/text/frame_name.hpp"
 #include "kinecal/tools/simulation/place_target.ipp"

@@ -14,7 +14,7 @@
 
 #include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/geometry/median.hpp"
-#include "kinecal/parameters/joint_model.hpp"
+#include "kinecal/parameters/joint_models/joint_model.hpp"
 #include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 

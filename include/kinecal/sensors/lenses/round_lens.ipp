@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/sensors/lens_model.hpp"
+#include "kinecal/sensors/lenses/lens_model.hpp"
 
 namespace kinecal::detail {
 

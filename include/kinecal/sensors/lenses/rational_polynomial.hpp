@@ -12,7 +12,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/sensors/pinhole_lens.ipp"
+#include "kinecal/sensors/lenses/pinhole_lens.ipp"
 
 namespace kinecal {
 
@@ -45,6 +45,7 @@ struct QuotientLens : PinholeLens<L, N> {
 struct RationalPolynomial : detail::QuotientLens<RationalPolynomial, 8> {
   static constexpr std::string_view kName =
       "rational_polynomial";  ///< distortion_model of camera_info
+  static constexpr std::array<std::string_view, 1> kAlso = {"rational"};  ///< in files
   static constexpr std::array kCoefficients = {
       ParameterInfo{"k1"}, ParameterInfo{"k2"}, ParameterInfo{"p1"},
       ParameterInfo{"p2"}, ParameterInfo{"k3"}, ParameterInfo{"k4"},

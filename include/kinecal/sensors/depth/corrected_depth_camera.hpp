@@ -12,7 +12,7 @@
 #include <span>
 
 #include "kinecal/geometry/pose.hpp"
-#include "kinecal/sensors/depth_polynomial.hpp"
+#include "kinecal/sensors/depth/depth_polynomial.hpp"
 
 namespace kinecal {
 

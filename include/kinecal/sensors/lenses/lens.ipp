@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinecal/sensors/built_in_sensor.hpp"
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 
 namespace kinecal {
 

@@ -11,13 +11,16 @@
 #include <array>
 #include <cmath>
 
-#include "kinecal/sensors/lens_model.hpp"
+#include "kinecal/sensors/lenses/lens_model.hpp"
 
 namespace kinecal::detail {
 
 /// A lens with N coefficients that bends the image of a pinhole.
 template <class L, std::size_t N>
 struct PinholeLens {
+  static constexpr bool kBendsPinhole =
+      true;  ///< contains the lenses with fewer coefficients that do
+
   /// True for points in front of the camera; lane by lane.
   template <class S>
   [[nodiscard]] static auto sees(const Vector3<S>& p) {

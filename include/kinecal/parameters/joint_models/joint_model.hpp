@@ -22,9 +22,11 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 
 #include "kinecal/kinematics/joint.hpp"
 #include "kinecal/parameters/parameter.hpp"
@@ -57,6 +59,28 @@ class JointReading {
 /// What the name of a model's parameter ends with, after the model's own: nothing, another joint
 /// ("elbow_coupling_shoulder"), a link ("elbow_link_sag_gripper").
 enum class ModelPartner { none, joint, link };
+
+/// The partner of a model.
+template <class M>
+[[nodiscard]] constexpr ModelPartner partner_of() {
+  if constexpr (requires { M::kPartner; }) return M::kPartner;
+  return ModelPartner::none;
+}
+namespace detail {
+/// What the call operator of a model returns; no type if it cannot be called.
+template <class M, ModelPartner P>
+struct EffectsOf : std::invoke_result<const M&, const JointReading&, const std::string&> {};
+template <class M>
+struct EffectsOf<M, ModelPartner::none> : std::invoke_result<const M&, const JointReading&> {};
+}  // namespace detail
+
+/// A joint model: names of parameters, and the effect of each in a sample.
+template <class M>
+concept JointModel = requires {
+  M::kParameters.size();
+  requires std::same_as < typename detail::EffectsOf < M, partner_of<M>()
+  > ::type, std::array < double, M::kParameters.size() >> ;
+};
 
 /// A gear ratio that differs from the driver's: q = (1 + gear_ratio) q_measured.
 struct GearRatio {
@@ -205,12 +229,6 @@ inline constexpr ParameterInfo kLag = SensorLag::kParameters[0];
 using JointModels = std::tuple<GearRatio, EccentricEncoder, SecondHarmonic, Sag, LinkSag, Coupling,
                                Backlash, LoadBacklash, MimicErrors>;
 
-/// The partner of a model.
-template <class M>
-[[nodiscard]] constexpr ModelPartner partner_of() {
-  if constexpr (requires { M::kPartner; }) return M::kPartner;
-  return ModelPartner::none;
-}
 /// The effect of a parameter as a formula of the reading q; empty if the model has none.
 template <class M>
 [[nodiscard]] constexpr std::string_view formula_of(std::size_t part) {

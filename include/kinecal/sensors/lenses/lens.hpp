@@ -42,5 +42,5 @@ class Lens {
 }  // namespace kinecal
 
 #ifdef KINECAL_HEADER_ONLY
-#include "kinecal/sensors/lens.ipp"
+#include "kinecal/sensors/lenses/lens.ipp"
 #endif

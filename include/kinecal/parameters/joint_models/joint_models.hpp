@@ -12,7 +12,7 @@
 
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/linkage.hpp"
-#include "kinecal/parameters/joint_model.hpp"
+#include "kinecal/parameters/joint_models/joint_model.hpp"
 
 namespace kinecal {
 
@@ -41,7 +41,7 @@ class AnyJointModel {
 
 namespace detail {
 
-template <class M>
+template <JointModel M>
 class JointModelOf final : public AnyJointModel {
  public:
   explicit JointModelOf(const M& model) : model_(model) {}
@@ -83,7 +83,7 @@ void add_joint_model(std::shared_ptr<const AnyJointModel> model);
 /// Adds a joint model: configurations and crates then know its parameters.  Added again, it changes
 /// nothing.
 /// @throws std::invalid_argument  if another model has a parameter of one of its names
-template <class M>
+template <JointModel M>
 void register_joint_model(const M& model) {
   detail::add_joint_model(std::make_shared<const detail::JointModelOf<M>>(model));
 }
@@ -120,5 +120,5 @@ struct JointModelParameter {
 }  // namespace kinecal
 
 #ifdef KINECAL_HEADER_ONLY
-#include "kinecal/parameters/joint_models.ipp"
+#include "kinecal/parameters/joint_models/joint_models.ipp"
 #endif

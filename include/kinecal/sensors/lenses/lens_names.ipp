@@ -6,43 +6,40 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
-#include "kinecal/sensors/double_sphere.hpp"
-#include "kinecal/sensors/equidistant.hpp"
-#include "kinecal/sensors/lens_names.hpp"
-#include "kinecal/sensors/plumb_bob.hpp"
-#include "kinecal/sensors/rational_polynomial.hpp"
+#include "kinecal/sensors/lenses/lens_names.hpp"
+#include "kinecal/sensors/lenses/lenses.hpp"
 #include "kinecal/sensors/sensor.hpp"
 
 namespace kinecal {
 
 namespace detail {
 
-/// Coefficients of a lens by OpenCV's order, in which a longer list contains the shorter ones.
+/// What names tell of a lens.
 struct NamedLens {
-  std::string_view name;                      ///< of the lens
-  std::size_t coefficients = 0;               ///< number of them
-  bool bends_pinhole = false;                 ///< contains all such lenses with fewer coefficients
-  std::array<std::string_view, 5> also = {};  ///< other names in files
+  std::string_view name;         ///< of the lens
+  std::size_t coefficients = 0;  ///< number of them
+  bool bends_pinhole = false;    ///< contains all such lenses with fewer coefficients
+  std::span<const std::string_view> also = {};  ///< other names in files
 };
-template <class L>
-[[nodiscard]] constexpr NamedLens named(std::array<std::string_view, 5> also,
-                                        bool bends_pinhole = false) {
-  return {L::kName, L::kCoefficients.size(), bends_pinhole, also};
+template <LensModel... Ls>
+[[nodiscard]] constexpr auto named(LensList<Ls...>) {
+  const auto of = []<class L>(std::type_identity<L>) {
+    NamedLens lens{L::kName, L::kCoefficients.size()};
+    if constexpr (requires { L::kBendsPinhole; }) lens.bends_pinhole = L::kBendsPinhole;
+    if constexpr (requires { L::kAlso; }) lens.also = L::kAlso;
+    return lens;
+  };
+  return std::array{of(std::type_identity<Ls>())...};
 }
-inline constexpr std::array kLenses = {
-    named<PlumbBob>({"radtan", "brown_conrady"}, true),
-    named<RationalPolynomial>({"rational"}, true), named<ThinPrism>({}, true),
-    named<Equidistant>({"fisheye", "equi", "kannala_brandt", "kannala_brandt4", "KANNALA_BRANDT4"}),
-    named<DoubleSphere>({"ds"})};
+inline constexpr std::array kLenses = named(Lenses());
 
 [[nodiscard]] inline const NamedLens* find_lens(std::string_view name) {
   for (const NamedLens& lens : kLenses) {
-    if (lens.name == name ||
-        (!name.empty() && std::find(lens.also.begin(), lens.also.end(), name) != lens.also.end())) {
-      return &lens;
-    }
+    if (lens.name == name) return &lens;
+    if (std::find(lens.also.begin(), lens.also.end(), name) != lens.also.end()) return &lens;
   }
   return nullptr;
 }

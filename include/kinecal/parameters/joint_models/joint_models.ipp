@@ -7,7 +7,7 @@
 #include <typeinfo>
 #include <utility>
 
-#include "kinecal/parameters/joint_models.hpp"
+#include "kinecal/parameters/joint_models/joint_models.hpp"
 
 namespace kinecal {
 

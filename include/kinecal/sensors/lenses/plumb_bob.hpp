@@ -10,13 +10,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/sensors/pinhole_lens.ipp"
+#include "kinecal/sensors/lenses/pinhole_lens.ipp"
 
 namespace kinecal {
 
 /// A pinhole with radial and tangential distortion.
 struct PlumbBob : detail::PinholeLens<PlumbBob, 5> {
   static constexpr std::string_view kName = "plumb_bob";  ///< distortion_model of camera_info
+  static constexpr std::array<std::string_view, 2> kAlso = {"radtan",
+                                                            "brown_conrady"};  ///< in files
   static constexpr std::array kCoefficients = {ParameterInfo{"k1"}, ParameterInfo{"k2"},
                                                ParameterInfo{"p1"}, ParameterInfo{"p2"},
                                                ParameterInfo{"k3"}};  ///< in the order of D

@@ -57,5 +57,5 @@ void set_coefficients(CameraInfo& info, std::string_view lens,
 }  // namespace kinecal
 
 #ifdef KINECAL_HEADER_ONLY
-#include "kinecal/sensors/lens_names.ipp"
+#include "kinecal/sensors/lenses/lens_names.ipp"
 #endif

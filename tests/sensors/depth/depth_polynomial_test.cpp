@@ -1,4 +1,4 @@
-#include "kinecal/sensors/depth_polynomial.hpp"
+#include "kinecal/sensors/depth/depth_polynomial.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cstring>
 #include <random>
 
-#include "kinecal/sensors/depth_camera.hpp"
-#include "kinecal/sensors/true_depth.hpp"
+#include "kinecal/sensors/depth/depth_camera.hpp"
+#include "kinecal/sensors/depth/true_depth.hpp"
 
 namespace kinecal {
 namespace {

@@ -12,13 +12,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/sensors/round_lens.ipp"
+#include "kinecal/sensors/lenses/round_lens.ipp"
 
 namespace kinecal {
 
 /// A fisheye lens with two coefficients.
 struct DoubleSphere {
   static constexpr std::string_view kName = "double_sphere";  ///< distortion_model of camera_info
+  static constexpr std::array<std::string_view, 1> kAlso = {"ds"};  ///< in files
   static constexpr std::array kCoefficients = {ParameterInfo{"xi"},
                                                ParameterInfo{"alpha"}};  ///< in the order of D
 

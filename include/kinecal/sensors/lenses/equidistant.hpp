@@ -15,13 +15,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "kinecal/sensors/round_lens.ipp"
+#include "kinecal/sensors/lenses/round_lens.ipp"
 
 namespace kinecal {
 
 /// A fisheye lens.
 struct Equidistant {
   static constexpr std::string_view kName = "equidistant";  ///< distortion_model of camera_info
+  static constexpr std::array<std::string_view, 5> kAlso = {
+      "fisheye", "equi", "kannala_brandt", "kannala_brandt4", "KANNALA_BRANDT4"};  ///< in files
   static constexpr std::array kCoefficients = {ParameterInfo{"k1"}, ParameterInfo{"k2"},
                                                ParameterInfo{"k3"},
                                                ParameterInfo{"k4"}};  ///< in the order of D

@@ -21,8 +21,8 @@
 #include <string>
 
 #include "kinecal/sensors/camera_image.hpp"
-#include "kinecal/sensors/corrected_depth_camera.hpp"
-#include "kinecal/sensors/depth_polynomial.hpp"
+#include "kinecal/sensors/depth/corrected_depth_camera.hpp"
+#include "kinecal/sensors/depth/depth_polynomial.hpp"
 #include "kinecal/sensors/sensor.hpp"
 
 namespace kinecal {

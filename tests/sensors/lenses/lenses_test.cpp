@@ -112,6 +112,74 @@ TEST(Lenses, ARayLeadsToItsPixelFarFromTheAxis) {
   expect_rays_lead_back<DoubleSphere>(camera_info("double_sphere", {0.3, 0.4}), 120);
 }
 
+/// A lens without its own inverse.
+template <class L>
+struct Forward {
+  static constexpr std::string_view kName = L::kName;
+  static constexpr auto kCoefficients = L::kCoefficients;
+  template <class S, class C>
+  static Eigen::Matrix<S, 2, 1> image(const Vector3<S>& p,
+                                      const std::array<C, kCoefficients.size()>& d) {
+    return L::image(p, d);
+  }
+};
+
+/// What is found by Newton's method is what the inverse that somebody wrote gives, with its derivatives by place and
+/// coefficients.
+template <class L>
+void expect_found_inverse(const std::vector<double>& coefficients, double degrees) {
+  constexpr std::size_t kN = L::kCoefficients.size();
+  using J = Jet<double, static_cast<int>(kN) + 2>;
+  std::array<double, kN> plain{};
+  std::array<J, kN> d;
+  for (std::size_t i = 0; i < kN; ++i) {
+    plain[i] = coefficients[i];
+    d[i] = J(coefficients[i], static_cast<int>(i) + 2);
+  }
+  for (const Vector3<double>& p : points_up_to(degrees)) {
+    const Eigen::Vector2d at = L::image(p, plain);
+    const Eigen::Matrix<J, 2, 1> place(J(at.x(), 0), J(at.y(), 1));
+    Sight<J> written = L::sight(place, d), found = detail::sight_of<Forward<L>>(place, d);
+    const auto unit = [](Vector3<J> v) {  // lengths may differ, and so may their derivatives
+      const J length = sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z());
+      return Vector3<J>(v.x() / length, v.y() / length, v.z() / length);
+    };
+    const auto turn = [&](const Sight<J>& sight, const Vector3<J>& by) {  // how the ray turns
+      const Vector3<J>& u = sight.direction;
+      const J length = u.x() * u.x() + u.y() * u.y() + u.z() * u.z();
+      return Vector3<J>((u.y() * by.z() - u.z() * by.y()) / length,
+                        (u.z() * by.x() - u.x() * by.z()) / length,
+                        (u.x() * by.y() - u.y() * by.x()) / length);
+    };
+    const auto expect_same = [&](const Vector3<J>& a, const Vector3<J>& b) {
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(a(i).a, b(i).a, 1e-10) << L::kName << " at " << p.transpose();
+        EXPECT_LE((a(i).v - b(i).v).norm(), 1e-8 * (1.0 + b(i).v.norm())) << L::kName;
+      }
+    };
+    expect_same(unit(found.direction), unit(written.direction));
+    expect_same(turn(found, found.by_x), turn(written, written.by_x));
+    expect_same(turn(found, found.by_y), turn(written, written.by_y));
+  }
+}
+
+TEST(Lenses, WithoutAnInverseHaveOne) {
+  expect_found_inverse<PlumbBob>(kPlumbBob, 45);
+  expect_found_inverse<RationalPolynomial>(kWideRational, 80);
+  expect_found_inverse<ThinPrism>(kThinPrism, 50);
+  expect_found_inverse<Equidistant>(kEquidistant, 100);
+  expect_found_inverse<Equidistant>({0, 0, 0, 0}, 170);
+  expect_found_inverse<DoubleSphere>(kDoubleSphere, 98);
+  expect_found_inverse<DoubleSphere>({0.3, 0.4}, 110);
+  EXPECT_EQ(check_sensor(LensCamera<Forward<DoubleSphere>>{},
+                         pixels_of(camera_info("double_sphere", kDoubleSphere))),
+            kLawsHold);
+  const std::array<double, 2> d = {kDoubleSphere[0], kDoubleSphere[1]};
+  EXPECT_FALSE(
+      detail::sight_of<Forward<DoubleSphere>>(Eigen::Vector2d(9.0, 0.0), d).direction.allFinite())
+      << "outside of its image";
+}
+
 /// Close to the axis, series replace quotients of small numbers.
 TEST(Lenses, AreSmoothAtTheAxis) {
   const auto check = [](const auto& eye, const std::string& name) {
