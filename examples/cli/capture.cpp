@@ -26,7 +26,7 @@
 #include "kinecal/procedure/session_end.hpp"
 #include "kinecal/procedure/session_follower.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/tools/cameras/next_photographs.hpp"
+#include "kinecal/config/cameras/next_photographs.hpp"
 #include "kinecal/tools/detect/detect.hpp"
 #include "output_file.hpp"
 #include "pose_file.hpp"

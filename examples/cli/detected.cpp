@@ -7,7 +7,7 @@
 #include <set>
 
 #include "kinecal/samples/joint_moves.hpp"
-#include "kinecal/tools/cameras/next_photographs.hpp"
+#include "kinecal/config/cameras/next_photographs.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {

@@ -14,7 +14,7 @@
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
-#include "kinecal/tools/cameras/initial_cameras.hpp"
+#include "kinecal/config/cameras/initial_cameras.hpp"
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "output_file.hpp"
 #include "terminal.hpp"

@@ -3,6 +3,15 @@
 #pragma once
 
 #include "kinecal/config/assemble.hpp"
+#include "kinecal/config/cameras/camera_start.hpp"
+#include "kinecal/config/cameras/find_lenses.hpp"
+#include "kinecal/config/cameras/initial_cameras.hpp"
+#include "kinecal/config/cameras/later_cameras.hpp"
+#include "kinecal/config/cameras/lens_start.hpp"
+#include "kinecal/config/cameras/next_photographs.hpp"
+#include "kinecal/config/cameras/prepare_cameras.hpp"
+#include "kinecal/config/cameras/single_camera.hpp"
+#include "kinecal/config/cameras/start_cameras.hpp"
 #include "kinecal/config/capture/capture_config.hpp"
 #include "kinecal/config/choose_images.hpp"
 #include "kinecal/config/choose_lenses.hpp"

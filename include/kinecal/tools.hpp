@@ -2,15 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/tools/cameras/camera_start.hpp"
-#include "kinecal/tools/cameras/find_lenses.hpp"
-#include "kinecal/tools/cameras/initial_cameras.hpp"
-#include "kinecal/tools/cameras/later_cameras.hpp"
-#include "kinecal/tools/cameras/lens_start.hpp"
-#include "kinecal/tools/cameras/next_photographs.hpp"
-#include "kinecal/tools/cameras/prepare_cameras.hpp"
-#include "kinecal/tools/cameras/single_camera.hpp"
-#include "kinecal/tools/cameras/start_cameras.hpp"
 #include "kinecal/tools/detect/board_turns.hpp"
 #include "kinecal/tools/detect/contact_sheet.hpp"
 #include "kinecal/tools/detect/detect.hpp"

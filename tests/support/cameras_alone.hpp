@@ -13,7 +13,7 @@
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/solve/calibrate.hpp"
-#include "kinecal/tools/cameras/prepare_cameras.hpp"
+#include "kinecal/config/cameras/prepare_cameras.hpp"
 
 namespace kinecal::test {
 

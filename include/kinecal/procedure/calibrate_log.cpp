@@ -19,7 +19,7 @@
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/tools/cameras/later_cameras.hpp"
+#include "kinecal/config/cameras/later_cameras.hpp"
 #include "kinecal/trust/captures/ruined.hpp"
 #include "kinecal/trust/judge_shards.hpp"
 

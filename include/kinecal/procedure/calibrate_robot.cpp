@@ -18,7 +18,7 @@
 #include "kinecal/explain/would_help.hpp"
 #include "kinecal/procedure/judge_read_back.hpp"
 #include "kinecal/samples/joint_moves.hpp"
-#include "kinecal/tools/cameras/prepare_cameras.hpp"
+#include "kinecal/config/cameras/prepare_cameras.hpp"
 #include "kinecal/tools/identify/another_robot.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
 #include "kinecal/trust/judge_files.hpp"

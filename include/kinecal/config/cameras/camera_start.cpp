@@ -1,6 +1,6 @@
 // Definitions of camera_start.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/tools/cameras/camera_start.hpp"
+#include "kinecal/config/cameras/camera_start.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -14,7 +14,7 @@
 
 #include "kinecal/config/doubts/occurrences.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/tools/cameras/camera_places.ipp"
+#include "kinecal/config/cameras/camera_places.ipp"
 
 namespace kinecal::detail {
 

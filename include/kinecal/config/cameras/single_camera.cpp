@@ -1,6 +1,6 @@
 // Definitions of single_camera.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/tools/cameras/single_camera.hpp"
+#include "kinecal/config/cameras/single_camera.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Definitions of initial_cameras.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/tools/cameras/initial_cameras.hpp"
+#include "kinecal/config/cameras/initial_cameras.hpp"
 
 #include <fmt/format.h>
 

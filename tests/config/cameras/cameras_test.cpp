@@ -8,8 +8,8 @@
 
 #include "kinecal/sensors/lens_camera.hpp"
 #include "kinecal/sensors/lenses/lens.hpp"
-#include "kinecal/tools/cameras/initial_cameras.hpp"
-#include "kinecal/tools/cameras/lens_start.hpp"
+#include "kinecal/config/cameras/initial_cameras.hpp"
+#include "kinecal/config/cameras/lens_start.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
 #include "kinecal/trust/online.hpp"
 #include "support/camera_rig.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "kinecal/samples/paired_features.hpp"
-#include "kinecal/tools/cameras/camera_start.hpp"
+#include "kinecal/config/cameras/camera_start.hpp"
 
 namespace kinecal::detail {
 

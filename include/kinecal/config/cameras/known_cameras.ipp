@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kinecal/sensors/lenses/lens.hpp"
-#include "kinecal/tools/cameras/target_poses.ipp"
+#include "kinecal/config/cameras/target_poses.ipp"
 
 namespace kinecal::detail {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kinecal/samples/sample.hpp"
-#include "kinecal/tools/cameras/camera_start.hpp"
+#include "kinecal/config/cameras/camera_start.hpp"
 
 namespace kinecal {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kinecal/config/parameters_from_config.hpp"
-#include "kinecal/tools/cameras/target_view.ipp"
+#include "kinecal/config/cameras/target_view.ipp"
 
 namespace kinecal::detail {
 

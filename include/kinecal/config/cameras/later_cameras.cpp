@@ -1,12 +1,12 @@
 // Definitions of later_cameras.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/tools/cameras/later_cameras.hpp"
+#include "kinecal/config/cameras/later_cameras.hpp"
 
 #include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/parameters_from_config.hpp"
-#include "kinecal/tools/cameras/camera_checks.ipp"
-#include "kinecal/tools/cameras/known_cameras.ipp"
+#include "kinecal/config/cameras/camera_checks.ipp"
+#include "kinecal/config/cameras/known_cameras.ipp"
 
 namespace kinecal {
 

@@ -1,5 +1,5 @@
 // Which photographs to take next.
-#include "kinecal/tools/cameras/next_photographs.hpp"
+#include "kinecal/config/cameras/next_photographs.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "kinecal/geometry/pose.hpp"
-#include "kinecal/tools/cameras/lens_start.hpp"
+#include "kinecal/config/cameras/lens_start.hpp"
 
 namespace kinecal {
 

@@ -17,8 +17,8 @@
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/sensors/lenses/lens.hpp"
-#include "kinecal/tools/cameras/known_cameras.ipp"
-#include "kinecal/tools/cameras/target_pairs.ipp"
+#include "kinecal/config/cameras/known_cameras.ipp"
+#include "kinecal/config/cameras/target_pairs.ipp"
 
 namespace kinecal::detail {
 

@@ -1,6 +1,6 @@
 // Definitions of start_cameras.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/tools/cameras/start_cameras.hpp"
+#include "kinecal/config/cameras/start_cameras.hpp"
 
 #include <fmt/format.h>
 
@@ -16,11 +16,11 @@
 #include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/sensors/lenses/lens.hpp"
-#include "kinecal/tools/cameras/camera_checks.ipp"
-#include "kinecal/tools/cameras/camera_places.ipp"
-#include "kinecal/tools/cameras/known_cameras.ipp"
-#include "kinecal/tools/cameras/single_camera.hpp"
-#include "kinecal/tools/cameras/target_poses.ipp"
+#include "kinecal/config/cameras/camera_checks.ipp"
+#include "kinecal/config/cameras/camera_places.ipp"
+#include "kinecal/config/cameras/known_cameras.ipp"
+#include "kinecal/config/cameras/single_camera.hpp"
+#include "kinecal/config/cameras/target_poses.ipp"
 
 namespace kinecal {
 

@@ -1,6 +1,6 @@
 // Definitions of lens_start.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/tools/cameras/lens_start.hpp"
+#include "kinecal/config/cameras/lens_start.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/QR>

@@ -1,6 +1,6 @@
 // Definitions of find_lenses.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/tools/cameras/find_lenses.hpp"
+#include "kinecal/config/cameras/find_lenses.hpp"
 
 #include <fmt/format.h>
 
@@ -22,8 +22,8 @@
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/sensors/lenses/lens_names.hpp"
 #include "kinecal/solve/calibrate.hpp"
-#include "kinecal/tools/cameras/camera_places.ipp"
-#include "kinecal/tools/cameras/start_cameras.hpp"
+#include "kinecal/config/cameras/camera_places.ipp"
+#include "kinecal/config/cameras/start_cameras.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/systematic/folded_lens.hpp"

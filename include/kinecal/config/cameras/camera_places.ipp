@@ -12,7 +12,7 @@
 
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/problem/sampled_chain.hpp"
-#include "kinecal/tools/cameras/target_pairs.ipp"
+#include "kinecal/config/cameras/target_pairs.ipp"
 
 namespace kinecal::detail {
 

@@ -1,13 +1,13 @@
 // Definitions of prepare_cameras.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/tools/cameras/prepare_cameras.hpp"
+#include "kinecal/config/cameras/prepare_cameras.hpp"
 
 #include "kinecal/config/choose_images.hpp"
 #include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/own_frames.hpp"
-#include "kinecal/tools/cameras/camera_checks.ipp"
-#include "kinecal/tools/cameras/find_lenses.hpp"
-#include "kinecal/tools/cameras/start_cameras.hpp"
+#include "kinecal/config/cameras/camera_checks.ipp"
+#include "kinecal/config/cameras/find_lenses.hpp"
+#include "kinecal/config/cameras/start_cameras.hpp"
 
 namespace kinecal {
 

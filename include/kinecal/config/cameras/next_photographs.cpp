@@ -1,6 +1,6 @@
 // Says which photographs to take next.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/tools/cameras/next_photographs.hpp"
+#include "kinecal/config/cameras/next_photographs.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 
 #include "kinecal/capture/boards/homography.hpp"
 #include "kinecal/text/image_region.hpp"
-#include "kinecal/tools/cameras/target_view.ipp"
+#include "kinecal/config/cameras/target_view.ipp"
 
 namespace kinecal {
 

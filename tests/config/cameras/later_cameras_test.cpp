@@ -1,4 +1,4 @@
-#include "kinecal/tools/cameras/later_cameras.hpp"
+#include "kinecal/config/cameras/later_cameras.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
