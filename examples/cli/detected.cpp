@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/config/cameras/next_photographs.hpp"
+#include "kinecal/samples/joint_moves.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {

@@ -9,12 +9,12 @@
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "kinecal/config/cameras/initial_cameras.hpp"
 #include "kinecal/config/own_frames.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
-#include "kinecal/config/cameras/initial_cameras.hpp"
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "output_file.hpp"
 #include "terminal.hpp"

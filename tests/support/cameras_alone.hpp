@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "kinecal/config/assemble.hpp"
+#include "kinecal/config/cameras/prepare_cameras.hpp"
 #include "kinecal/config/own_frames.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/solve/calibrate.hpp"
-#include "kinecal/config/cameras/prepare_cameras.hpp"
 
 namespace kinecal::test {
 

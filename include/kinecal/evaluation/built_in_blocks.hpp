@@ -6,16 +6,18 @@
 #include "kinecal/evaluation/problem.hpp"
 
 #ifndef KINECAL_HEADER_ONLY
+/// Instances of their terms, declared (`extern`) or defined.
+#define KINECAL_BLOCK_CODE(storage)                        \
+  storage template class BlockTerm<PointToPoint, Packet>;  \
+  storage template class BlockTerm<PointToPixel, Packet>;  \
+  storage template class BlockTerm<PointToPlane, Packet>;  \
+  storage template class BlockTerm<PlaneToPlane, Packet>;  \
+  storage template class BlockTerm<PointDistance, Packet>; \
+  storage template class BlockTerm<PointToLine, Packet>;   \
+  storage template class BlockTerm<PointToSphere, Packet>; \
+  storage template class BlockTerm<PointToRay, Packet>
+
 namespace kinecal::detail {
-
-extern template class BlockTerm<PointToPoint, Packet>;
-extern template class BlockTerm<PointToPixel, Packet>;
-extern template class BlockTerm<PointToPlane, Packet>;
-extern template class BlockTerm<PlaneToPlane, Packet>;
-extern template class BlockTerm<PointDistance, Packet>;
-extern template class BlockTerm<PointToLine, Packet>;
-extern template class BlockTerm<PointToSphere, Packet>;
-extern template class BlockTerm<PointToRay, Packet>;
-
+KINECAL_BLOCK_CODE(extern);
 }  // namespace kinecal::detail
 #endif

@@ -6,15 +6,6 @@
 
 #ifndef KINECAL_HEADER_ONLY
 namespace kinecal::detail {
-
-template class BlockTerm<PointToPoint, Packet>;
-template class BlockTerm<PointToPixel, Packet>;
-template class BlockTerm<PointToPlane, Packet>;
-template class BlockTerm<PlaneToPlane, Packet>;
-template class BlockTerm<PointDistance, Packet>;
-template class BlockTerm<PointToLine, Packet>;
-template class BlockTerm<PointToSphere, Packet>;
-template class BlockTerm<PointToRay, Packet>;
-
+KINECAL_BLOCK_CODE();
 }  // namespace kinecal::detail
 #endif

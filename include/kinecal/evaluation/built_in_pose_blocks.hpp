@@ -6,10 +6,12 @@
 #include "kinecal/evaluation/problem.hpp"
 
 #ifndef KINECAL_HEADER_ONLY
+/// Instances of their terms, declared (`extern`) or defined.
+#define KINECAL_POSE_BLOCK_CODE(storage)                \
+  storage template class BlockTerm<PoseToPose, Packet>; \
+  storage template class BlockTerm<RayToRay, Packet>
+
 namespace kinecal::detail {
-
-extern template class BlockTerm<PoseToPose, Packet>;
-extern template class BlockTerm<RayToRay, Packet>;
-
+KINECAL_POSE_BLOCK_CODE(extern);
 }  // namespace kinecal::detail
 #endif

@@ -6,9 +6,6 @@
 
 #ifndef KINECAL_HEADER_ONLY
 namespace kinecal::detail {
-
-template class BlockTerm<PoseToPose, Packet>;
-template class BlockTerm<RayToRay, Packet>;
-
+KINECAL_POSE_BLOCK_CODE();
 }  // namespace kinecal::detail
 #endif

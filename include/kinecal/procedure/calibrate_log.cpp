@@ -13,13 +13,13 @@
 #include <utility>
 
 #include "kinecal/config/assemble.hpp"
+#include "kinecal/config/cameras/later_cameras.hpp"
 #include "kinecal/config/choose_images.hpp"
 #include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/config/cameras/later_cameras.hpp"
 #include "kinecal/trust/captures/ruined.hpp"
 #include "kinecal/trust/judge_shards.hpp"
 

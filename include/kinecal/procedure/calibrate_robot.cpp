@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "kinecal/config/assemble.hpp"
+#include "kinecal/config/cameras/prepare_cameras.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/hold_parameters.hpp"
@@ -18,7 +19,6 @@
 #include "kinecal/explain/would_help.hpp"
 #include "kinecal/procedure/judge_read_back.hpp"
 #include "kinecal/samples/joint_moves.hpp"
-#include "kinecal/config/cameras/prepare_cameras.hpp"
 #include "kinecal/tools/identify/another_robot.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
 #include "kinecal/trust/judge_files.hpp"

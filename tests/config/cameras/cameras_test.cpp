@@ -6,10 +6,10 @@
 #include <fstream>
 #include <map>
 
-#include "kinecal/sensors/lens_camera.hpp"
-#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/config/cameras/initial_cameras.hpp"
 #include "kinecal/config/cameras/lens_start.hpp"
+#include "kinecal/sensors/lens_camera.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
 #include "kinecal/trust/online.hpp"
 #include "support/camera_rig.hpp"

@@ -11,14 +11,14 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/config/cameras/known_cameras.ipp"
+#include "kinecal/config/cameras/target_pairs.ipp"
 #include "kinecal/config/config.hpp"
 #include "kinecal/config/doubts/unseen_corners.hpp"
 #include "kinecal/config/missing_sensors.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/sensors/lenses/lens.hpp"
-#include "kinecal/config/cameras/known_cameras.ipp"
-#include "kinecal/config/cameras/target_pairs.ipp"
 
 namespace kinecal::detail {
 

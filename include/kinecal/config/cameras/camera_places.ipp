@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/config/cameras/target_pairs.ipp"
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/problem/sampled_chain.hpp"
-#include "kinecal/config/cameras/target_pairs.ipp"
 
 namespace kinecal::detail {
 

@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/geometry/pose.hpp"
 #include "kinecal/config/cameras/lens_start.hpp"
+#include "kinecal/geometry/pose.hpp"
 
 namespace kinecal {
 

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "kinecal/config/assemble.hpp"
+#include "kinecal/config/cameras/camera_places.ipp"
+#include "kinecal/config/cameras/start_cameras.hpp"
 #include "kinecal/config/choose_images.hpp"
 #include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/config.hpp"
@@ -22,8 +24,6 @@
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/sensors/lenses/lens_names.hpp"
 #include "kinecal/solve/calibrate.hpp"
-#include "kinecal/config/cameras/camera_places.ipp"
-#include "kinecal/config/cameras/start_cameras.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/systematic/folded_lens.hpp"

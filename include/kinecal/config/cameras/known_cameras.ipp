@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/config/cameras/target_poses.ipp"
+#include "kinecal/sensors/lenses/lens.hpp"
 
 namespace kinecal::detail {
 

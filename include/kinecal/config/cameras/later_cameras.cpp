@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/config/cameras/later_cameras.hpp"
 
+#include "kinecal/config/cameras/camera_checks.ipp"
+#include "kinecal/config/cameras/known_cameras.ipp"
 #include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/parameters_from_config.hpp"
-#include "kinecal/config/cameras/camera_checks.ipp"
-#include "kinecal/config/cameras/known_cameras.ipp"
 
 namespace kinecal {
 

@@ -10,8 +10,8 @@
 #include <map>
 
 #include "kinecal/capture/boards/homography.hpp"
-#include "kinecal/text/image_region.hpp"
 #include "kinecal/config/cameras/target_view.ipp"
+#include "kinecal/text/image_region.hpp"
 
 namespace kinecal {
 

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/config/cameras/prepare_cameras.hpp"
 
-#include "kinecal/config/choose_images.hpp"
-#include "kinecal/config/choose_lenses.hpp"
-#include "kinecal/config/own_frames.hpp"
 #include "kinecal/config/cameras/camera_checks.ipp"
 #include "kinecal/config/cameras/find_lenses.hpp"
 #include "kinecal/config/cameras/start_cameras.hpp"
+#include "kinecal/config/choose_images.hpp"
+#include "kinecal/config/choose_lenses.hpp"
+#include "kinecal/config/own_frames.hpp"
 
 namespace kinecal {
 

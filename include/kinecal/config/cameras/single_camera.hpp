@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/samples/sample.hpp"
 #include "kinecal/config/cameras/camera_start.hpp"
+#include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
 

@@ -12,15 +12,15 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/config/doubts/used_joints.hpp"
-#include "kinecal/config/parameters_from_config.hpp"
-#include "kinecal/files/diagnostics.hpp"
-#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/config/cameras/camera_checks.ipp"
 #include "kinecal/config/cameras/camera_places.ipp"
 #include "kinecal/config/cameras/known_cameras.ipp"
 #include "kinecal/config/cameras/single_camera.hpp"
 #include "kinecal/config/cameras/target_poses.ipp"
+#include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/config/parameters_from_config.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 
 namespace kinecal {
 

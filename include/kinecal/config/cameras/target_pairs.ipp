@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/config/cameras/target_view.ipp"
+#include "kinecal/config/parameters_from_config.hpp"
 
 namespace kinecal::detail {
 

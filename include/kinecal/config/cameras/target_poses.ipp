@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/config/cameras/camera_places.ipp"
 #include "kinecal/config/doubts/occurrences.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/config/cameras/camera_places.ipp"
 
 namespace kinecal::detail {
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <string>
 
-#include "kinecal/samples/paired_features.hpp"
 #include "kinecal/config/cameras/camera_start.hpp"
+#include "kinecal/samples/paired_features.hpp"
 
 namespace kinecal::detail {
 
