@@ -90,9 +90,10 @@ struct Jet {
   /// x where the condition holds, else y; lane by lane.
   template <class Mask>
   friend Jet select(const Mask& condition, const Jet& x, const Jet& y) {
+    using kinecal::select;  // beside that of jets of jets
     Jet result;
-    result.a = kinecal::select(condition, x.a, y.a);
-    for (int k = 0; k < N; ++k) result.v(k) = kinecal::select(condition, x.v(k), y.v(k));
+    result.a = select(condition, x.a, y.a);
+    for (int k = 0; k < N; ++k) result.v(k) = select(condition, x.v(k), y.v(k));
     return result;
   }
   /// Functions: the chain rule.
