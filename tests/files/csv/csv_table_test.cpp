@@ -116,7 +116,7 @@ TEST(CsvTable, ARowOfUnitsIsBelowTheHeader) {
 TEST(CsvTable, PreamblesOfMotionCaptureArePassed) {
   const auto motive = table(
       "Format Version,1.23,Take Name,Take 1,Length Units,Meters\n\n"
-      ",Type,Rigid Body,Rigid Body,Rigid Body,Rigid Body\n,Name,RB,RB,RB,RB\n"
+      ",Type,Rigid Body,Rigid Body,Rigid Body,Rigid Body\n,Name,RB,RB,RB,RB\n,ID,1,1,1,1\n"
       ",,Rotation,Rotation,Position,Position\nFrame,Time (Seconds),X,Y,X,Y\n"
       "0,0.00,0.1,0.2,0.3,0.4\n1,0.01,0.1,0.2,0.3,0.4\n");
   EXPECT_THAT(motive.header.cells, ElementsAre("Frame", "Time (Seconds)", "Rotation X",

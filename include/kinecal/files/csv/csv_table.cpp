@@ -162,13 +162,14 @@ class CsvLayout {
       width_ = row.cells.size();
     }
     const auto first = [&](std::size_t per_number) {
-      const auto is_first = [&](const CsvRow& row) {
-        return !row.is_comment && is_data(row, per_number);
-      };
-      return std::find_if(rows_.begin(), rows_.end(), is_first) - rows_.begin();
+      std::size_t i = 0;
+      while (i < rows_.size() &&
+             (rows_[i].is_comment || !is_data(rows_[i], per_number) || are_names_below(i)))
+        ++i;
+      return i;
     };
-    begin_ = static_cast<std::size_t>(first(2));
-    if (begin_ == rows_.size()) begin_ = static_cast<std::size_t>(first(width_));
+    begin_ = first(2);
+    if (begin_ == rows_.size()) begin_ = first(width_);
     // Without any numbers, the first row is the header: each cell below it is an error.
     if (begin_ == rows_.size()) begin_ = rows_.empty() ? 0 : 1;
   }
@@ -181,6 +182,8 @@ class CsvLayout {
     }
     return all;
   }
+
+  [[nodiscard]] std::size_t width() const { return width_; }
 
   [[nodiscard]] CsvTable table(CsvHeader header, const std::string& file,
                                Diagnostics& diagnostics) {
@@ -220,6 +223,19 @@ class CsvLayout {
   /// True for what above the numbers is a row of a table without names rather than a title.
   [[nodiscard]] bool is_row(const CsvRow& row) const {
     return row.cells.size() == width_ || (row.cells.size() > 1 && numbers(row) == row.cells.size());
+  }
+  /// True if names follow shortly, so that numbers are above the header: of bodies or markers.
+  [[nodiscard]] bool are_names_below(std::size_t i) const {
+    constexpr std::size_t kRows = 3;
+    const auto is_name = [](const std::string& cell) { return !csv_number(cell); };
+    for (std::size_t below = i + 1; below < rows_.size() && below <= i + kRows; ++below) {
+      const CsvRow& row = rows_[below];
+      const auto names =
+          static_cast<std::size_t>(std::count_if(row.cells.begin(), row.cells.end(), is_name));
+      if (!row.is_comment && row.cells.size() == width_ && names == width_ && numbers(row) == 0)
+        return true;
+    }
+    return false;
   }
   /// True for a row of the usual number of cells, of which one in `per_number` is a number.
   [[nodiscard]] bool is_data(const CsvRow& row, std::size_t per_number) const {
@@ -273,7 +289,9 @@ class CsvLayout {
 
   /// Puts the name of its group before each name that several columns have: "Position", "X" -> "Position X".
   static void add_groups(const CsvRow& groups, CsvRow& header) {
-    if (groups.is_comment) return;
+    const bool has_ids =
+        std::find(groups.cells.begin(), groups.cells.end(), "ID") != groups.cells.end();
+    if (groups.is_comment || has_ids) return;  // of Motive: names are above them
     const std::vector<std::string> names = header.cells;
     std::string group;
     for (std::size_t c = 0; c < names.size() && c < groups.cells.size(); ++c) {
@@ -339,14 +357,16 @@ CsvTable csv_table(std::string_view text, char separator, CsvHeader header, cons
 
 char csv_separator(std::string_view text) {
   char best = ',';
-  std::size_t most = 0;
+  std::size_t most = 0, width = 0;  // of those that are alike, the one without other cells: 0,5;0,7
   for (const char separator : {',', ';', '\t', ' '}) {
     Diagnostics ignored;
     std::vector<CsvRow> rows = csv_rows(text, separator, "", ignored);
     if (!ignored.errors.empty()) continue;
-    const std::size_t numbers = CsvLayout(std::move(rows), separator).numbers();
-    if (numbers <= most) continue;
+    const CsvLayout layout(std::move(rows), separator);
+    const std::size_t numbers = layout.numbers();
+    if (numbers < most || numbers == 0 || (numbers == most && layout.width() >= width)) continue;
     most = numbers;
+    width = layout.width();
     best = separator;
   }
   return best;

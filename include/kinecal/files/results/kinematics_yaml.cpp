@@ -131,9 +131,13 @@ std::string kinematics_difference(const Robot& robot, const std::string& existin
     const Pose<double> difference =
         detail::origin_of(*of, entry, file).inverse() * robot.joint(joint).origin;
     const double shift = difference.translation.norm(), turn = log(difference.rotation).norm();
-    if (shift < kMetres && turn < kRadians) continue;
-    differences += fmt::format("{}{} by {:.2g} mm and {:.2g} deg", differences.empty() ? "" : ", ",
-                               entry, 1e3 * shift, turn * 180.0 / std::numbers::pi);
+    std::string by;
+    if (shift > kMetres) by = fmt::format("{:.2g} mm", 1e3 * shift);
+    if (turn > kRadians) {
+      by += fmt::format("{}{:.2g} deg", by.empty() ? "" : " and ", turn * 180.0 / std::numbers::pi);
+    }
+    if (by.empty()) continue;
+    differences += fmt::format("{}{} by {}", differences.empty() ? "" : ", ", entry, by);
   }
   return differences;
 }
