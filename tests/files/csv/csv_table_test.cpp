@@ -138,6 +138,13 @@ TEST(CsvTable, PreamblesOfMotionCaptureArePassed) {
               testing::StartsWith("line 4 was read as the header: 'Frame, "));
 }
 
+TEST(CsvTable, AHeaderMayCountTheColumns) {
+  const auto read = table("image,1,2,3\n\"a\",0.1,0.2,0.3\n\"b\",0.1,0.2,0.3\n");
+  EXPECT_THAT(read.header.cells, ElementsAre("image", "1", "2", "3"));
+  EXPECT_THAT(read.rows, testing::SizeIs(2));
+  EXPECT_THAT(table("a.png,0.1,0.2,0.3\nb.png,0.1,0.2,0.3\n").header.cells, IsEmpty());
+}
+
 TEST(CsvTable, ABadRowBelowTheHeaderStaysARow) {
   const auto read = table("q1,q2,x\na,b,c\n0.1,0.2\n0.1,0.2,0.3\n0.1,0.2,0.3\n");
   EXPECT_THAT(read.header.cells, ElementsAre("q1", "q2", "x"));

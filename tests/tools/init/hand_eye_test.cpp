@@ -239,6 +239,9 @@ TEST_F(HandEyeColumns, AFolderHasOnePosePerFileOfAnyEnding) {
     EXPECT_EQ(read_pose_table(folder.path().string()),
               "image,1,2,3,4,5,6\n\"2\",1,2,3,0,0,1\n\"10\",4,5,6,0,0,2\n")
         << ending;
+    HandEyeTables tables{folder.path().string(), "ur"};
+    EXPECT_THAT(columns_of(tables), HasSubstr("header: true\n"));
+    EXPECT_THAT(columns_of(tables), HasSubstr("[\"1\", \"2\", \"3\", \"4\", \"5\", \"6\"]"));
   }
 }
 

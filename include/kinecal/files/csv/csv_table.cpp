@@ -242,7 +242,25 @@ class CsvLayout {
     const auto filled = static_cast<std::size_t>(std::count_if(
         row.cells.begin(), row.cells.end(), [](const std::string& cell) { return !cell.empty(); }));
     const std::size_t found = numbers(row);
-    return row.cells.size() == width_ && found > 0 && per_number * found >= filled;
+    return row.cells.size() == width_ && found > 0 && per_number * found >= filled &&
+           !(&row == rows_.data() && counts_columns(row));
+  }
+
+  /// True for a header such as image, 1, 2, 3.
+  [[nodiscard]] static bool counts_columns(const CsvRow& row) {
+    double next = -1.0;
+    bool has_name = false;
+    std::size_t count = 0;
+    for (const std::string& cell : row.cells) {
+      const std::optional<double> number = csv_number(cell);
+      has_name = has_name || !number;
+      if (!number) continue;
+      if (next < 0.0 ? *number != 0.0 && *number != 1.0 : *number != next) return false;
+      next = *number + 1.0;
+      ++count;
+    }
+    constexpr std::size_t kLeast = 3;
+    return has_name && count >= kLeast;
   }
 
   /// Names in each cell, each once.
