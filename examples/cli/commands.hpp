@@ -109,7 +109,7 @@ struct InitOptions {
 int init_hand_eye(const InitOptions& options);
 
 /// Writes a URDF, a configuration and samples from the poses of a flange and of an object in the camera
-/// which another program of hand-eye calibration saved.
+/// which another program of hand-eye calibration saved, or which are in a table: then columns.yaml, too.
 int init_hand_eye_samples(const InitOptions& options);
 
 /// Writes the configuration and capture.yaml of a calibration of cameras alone.

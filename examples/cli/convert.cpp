@@ -43,13 +43,6 @@ Content read_yaml(const std::string& input, Diagnostics& diagnostics) {
   } catch (const InputError& error) {
     found.errors.emplace_back(error.what());
   }
-  const std::string extension = std::filesystem::path(input).extension().string();
-  if (!found.errors.empty() &&
-      (extension == ".csv" || extension == ".tsv" || extension == ".txt")) {
-    throw InputError(
-        input +
-        ": is not YAML; for a table, give --columns FILE, which says what its columns mean");
-  }
   diagnostics.errors.insert(diagnostics.errors.end(), found.errors.begin(), found.errors.end());
   diagnostics.warnings.insert(diagnostics.warnings.end(), found.warnings.begin(),
                               found.warnings.end());

@@ -407,6 +407,7 @@ std::string joint_zeros_text(const Robot& robot, const std::string& urdf_text,
 int init(const InitOptions& options) {
   if (!options.poses.empty()) return init_hand_eye(options);
   if (!options.cameras.empty()) return init_cameras(options);
+  if (!options.corners.empty()) throw InputError("--corners goes with --poses or --cameras");
   if (options.urdf.empty()) {
     throw InputError(
         "give the robot: --urdf; or the poses of its flange: --poses; or the names of cameras "

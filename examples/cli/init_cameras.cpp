@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,11 @@
 #include "kinecal/config/own_frames.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/text/counted.hpp"
+#include "kinecal/tools/init/hand_eye.hpp"
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "output_file.hpp"
 #include "terminal.hpp"
@@ -32,9 +36,13 @@ int init_cameras(const InitOptions& options) {
   const std::string capture = !options.capture.empty() ? options.capture
                               : folder == "."          ? "capture.yaml"
                                                        : (folder / "capture.yaml").string();
-  for (const std::string& output : {options.output, capture}) {
-    check_output(output, {}, options.force);
-  }
+  check_output(options.output, {}, options.force);
+  if (options.corners.empty()) check_output(capture, {}, options.force);
+  const bool has_corners = !options.corners.empty();
+  const std::string samples_file =
+      folder == "." ? "samples.yaml" : (folder / "samples.yaml").string();
+  if (has_corners)
+    check_output(samples_file, {options.corners, options.target_points}, options.force);
   std::string text;
   try {
     text = initial_cameras(options.cameras);
@@ -52,6 +60,18 @@ int init_cameras(const InitOptions& options) {
   answers.camera_type = "camera2d";
   answers.target_frame = answers.holder = "board";
   const std::string finder = initial_capture(robot, answers);
+  if (has_corners) {
+    const std::vector<Sample> samples =
+        corner_samples(options.corners, options.target_points, options.cameras);
+    std::ostringstream yaml;
+    write_samples(yaml, samples);
+    write_text_file(options.output, text);
+    write_text_file(samples_file, yaml.str());
+    say("wrote {} and {}: {}\n", options.output, samples_file, counted(samples.size(), "image"));
+    say("next: {}\n",
+        calibrate_command({.config = options.output, .samples = {samples_file}}).str());
+    return kDone;
+  }
   write_text_file(options.output, text);
   write_text_file(capture, finder);
   say("wrote {} and {}\n  fill in what is zero in {}: its sizes decide the scale\n", options.output,

@@ -29,7 +29,7 @@ InitTargetWord board_of(const InitOptions& options) {
   constexpr const char* kBoards =
       "checkerboard, apriltag or charuco if the flange carries the board and the camera stands "
       "beside the robot; world_checkerboard, world_apriltag or world_charuco if the flange carries "
-      "the camera";
+      "the camera; marker or world_marker if the table also has the pose of a marker in the camera";
   if (options.targets.empty()) throw InputError(fmt::format("--target: give {}", kBoards));
   const auto target = init_target(options.targets.front());
   const bool is_board = target && (target->target == InitTarget::checkerboard ||
@@ -67,7 +67,13 @@ InitAnswers answers_of(const InitTargetWord& word, const InitOptions& options) {
 }  // namespace
 
 int init_hand_eye(const InitOptions& options) {
-  if (is_hand_eye_samples(options.poses)) return init_hand_eye_samples(options);
+  const auto is_marker = [](const std::string& target) {
+    return target == "marker" || target == "world_marker";
+  };
+  if (is_hand_eye_samples(options.poses) ||
+      (options.targets.size() == 1 && is_marker(options.targets.front()))) {
+    return init_hand_eye_samples(options);
+  }
   const InitTargetWord word = board_of(options);
   const InitAnswers answers = answers_of(word, options);
   const std::filesystem::path folder = folder_of(options.output);
@@ -85,11 +91,16 @@ int init_hand_eye(const InitOptions& options) {
 
   const std::string urdf_text = hand_eye_urdf(word.target == InitTarget::world_checkerboard);
   const Robot robot = parse_urdf(urdf_text, urdf);
-  const HandEyeTables tables{options.poses,   options.form,          options.inverse,
-                             options.corners, options.target_points, holder_of(answers)};
+  const HandEyeTables tables{.poses = options.poses,
+                             .form = options.form,
+                             .inverse = options.inverse,
+                             .corners = options.corners,
+                             .target = options.target_points,
+                             .holder = holder_of(answers),
+                             .camera_on_hand = word.target == InitTarget::world_checkerboard};
   const std::string config = initial_config(robot, answers);
-  write_text_file(columns, hand_eye_columns(tables, folder.string()));
   Diagnostics diagnostics;
+  write_text_file(columns, hand_eye_columns(tables, folder.string(), diagnostics));
   const CsvMapping mapping =
       read_csv_mapping(columns, diagnostics, has_corners ? CsvUse::samples : CsvUse::joints);
   const std::vector<Sample> samples =

@@ -1,4 +1,5 @@
-// kinecal init --poses: a hand-eye calibration from samples of MoveIt Calibration or easy_handeye2.
+// kinecal init --poses: a hand-eye calibration from poses of the flange and of a marker in the camera: samples of MoveIt
+// Calibration or easy_handeye2, or a table.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "kinecal/files/csv/read_csv_samples.hpp"
 #include "kinecal/files/poses/hand_eye_samples.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
@@ -32,9 +34,10 @@ bool is_camera_on_hand(const InitOptions& options) {
   constexpr std::array<std::string_view, 4> kTargets = {"marker", "checkerboard", "apriltag",
                                                         "charuco"};
   for (const auto& [option, value] :
-       {std::pair("--form", options.form), std::pair("--corners", options.corners),
-        std::pair("--arm", options.arm), std::pair("--camera", options.camera),
-        std::pair("--base", options.base), std::pair("--target-frame", options.target_frame),
+       {std::pair("--corners", options.corners),
+        std::pair("--target-points", options.target_points), std::pair("--arm", options.arm),
+        std::pair("--camera", options.camera), std::pair("--base", options.base),
+        std::pair("--target-frame", options.target_frame),
         std::pair("--capture", options.capture)}) {
     if (!value.empty()) {
       throw InputError(fmt::format("{} does not go with {}, which has poses of the object", option,
@@ -77,16 +80,32 @@ int init_hand_eye_samples(const InitOptions& options) {
   const auto beside = [&](const char* name) {
     return folder == "." ? std::string(name) : (folder / name).string();
   };
-  const std::string urdf = beside("hand_eye.urdf"), samples_file = beside("hand_eye_samples.yaml");
-  const std::vector<std::string> outputs = {options.output, urdf, samples_file};
+  const std::string urdf = beside("hand_eye.urdf"), samples_file = beside("hand_eye_samples.yaml"),
+                    columns = beside("columns.yaml");
+  const bool is_table = !is_hand_eye_samples(options.poses);
+  if (!is_table && !options.form.empty()) {
+    throw InputError(
+        fmt::format("--form does not go with {}, which says what its poses are", options.poses));
+  }
+  std::vector<std::string> outputs = {options.output, urdf, samples_file};
+  if (is_table) outputs.push_back(columns);
   for (const std::string& output : outputs) check_output(output, {options.poses}, options.force);
 
   Diagnostics diagnostics;
-  std::vector<Sample> samples = read_hand_eye_samples(options.poses, on_hand, diagnostics);
-  if (options.inverse) {
+  std::vector<Sample> samples;
+  if (is_table) {
+    const HandEyeTables tables{.poses = options.poses,
+                               .form = options.form,
+                               .inverse = options.inverse,
+                               .camera_on_hand = on_hand,
+                               .has_marker = true};
+    write_text_file(columns, hand_eye_columns(tables, folder.string(), diagnostics));
+    samples = read_csv_samples(options.poses, columns, diagnostics);
+  } else {
+    samples = read_hand_eye_samples(options.poses, on_hand, diagnostics);
     for (Sample& sample : samples) {
       Pose<double>& pose = sample.poses.at(HandEyeNames::kFlangeJoint);
-      pose = pose.inverse();
+      if (options.inverse) pose = pose.inverse();
     }
   }
   if (diagnostics.errors.empty()) doubt_the_target(options, on_hand, samples, diagnostics);
@@ -99,6 +118,13 @@ int init_hand_eye_samples(const InitOptions& options) {
   say("wrote {}, {} and {}\n  {} of the flange and of the object in the camera, which is {}\n",
       urdf, options.output, samples_file, counted(samples.size(), "pose"),
       on_hand ? "on the hand" : "beside the robot");
+  if (is_table) {
+    say("  {} says how the columns were read: look at it; after changes: {}\n", columns,
+        ShellCommand{"kinecal", "convert", shell_file(options.poses), shell_file(samples_file),
+                     "--force"}
+            .add_option("--columns", {columns})
+            .str());
+  }
   const InputOptions inputs{.urdf = urdf, .config = options.output, .samples = {samples_file}};
   say("next: {}\n", calibrate_command(inputs).str());
   return kDone;

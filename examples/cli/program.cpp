@@ -305,19 +305,22 @@ void add_init(CLI::App& command, InitOptions& options) {
       ->excludes(urdf)
       ->excludes(poses);
   command
-      .add_option("--form", options.form,
-                  "what the columns of --poses are: quaternion_xyzw, quaternion_wxyz, "
-                  "rotation_vector, rpy, matrix, ur, abb, kuka, fanuc, fixed_xyz, euler_zyx, ...; "
-                  "default: by their names")
+      .add_option(
+          "--form", options.form,
+          "what the columns of --poses are: quaternion_xyzw, quaternion_wxyz, "
+          "rotation_vector, rpy, matrix, ur, abb, kuka, fanuc, doosan, yaskawa, ..., fixed_xyz, "
+          "euler_zyx, ...; "
+          "default: by their names, and by what the camera sees")
       ->needs(poses)
       ->type_name("FORM");
   command.add_flag("--inverse", options.inverse, "--poses has the poses of the base in the flange")
       ->needs(poses);
   CLI::Option* corners =
       command
-          .add_option("--corners", options.corners,
-                      "a table of the corners seen (image, id, u, v), instead of photographs")
-          ->needs(poses)
+          .add_option(
+              "--corners", options.corners,
+              "a table of the corners seen (image, id, u, v), instead of photographs; with --poses "
+              "or --cameras (of several: a column camera)")
           ->type_name("FILE");
   corners->needs(command
                      .add_option("--target-points", options.target_points,

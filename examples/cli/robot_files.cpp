@@ -38,12 +38,45 @@ int newest_backup(const fs::path& file) {
   return n;
 }
 
+/// Checks that a URDF was made with the file that is to be replaced: else a factory's calibration would be replaced by the
+/// nominal geometry.  A file that kinecal wrote may also hold a calibration of the same URDF.
+/// @throws InputError  naming the joints that differ
+void check_kinematics(const std::string& name, const fs::path& file, const Robot& robot,
+                      const std::string& existing) {
+  std::string difference = kinematics_difference(robot, existing, name);
+  if (difference.empty()) return;
+  if (existing.starts_with(kKinematicsMark)) {
+    std::string before;  // the newest backup that kinecal has not written
+    for (int n = newest_backup(file); n > 0 && before.empty(); --n) {
+      before = detail::read_text_file((file.parent_path() / backup_name(file, n)).string());
+      if (before.starts_with(kKinematicsMark)) before.clear();
+    }
+    if (before.empty()) return;
+    difference = kinematics_difference(robot, before, name);
+    if (difference.empty()) return;
+  }
+  throw InputError(
+      fmt::format("{}: the URDF was not made with this file: joints differ: {}; its calibration "
+                  "would be lost. Expand the xacro "
+                  "with the file (kinematics_params:=FILE; kinematics_params_file:=FILE in launch "
+                  "files) and calibrate that URDF, or give the "
+                  "name of a new file",
+                  name, difference));
+}
+
 void add_kinematics(const std::string& name, const Robot& robot,
                     const std::vector<JointPatch>& patches, RobotFiles& files) {
   const fs::path file = file_behind(name);
   const std::string existing = fs::exists(file) ? detail::read_text_file(name) : "";
   const std::string text = kinematics_yaml(robot, patches, existing, name);
-  files.sets.push_back({folder_of(file.string()), {{file.filename().string(), text}}});
+  if (!existing.empty()) check_kinematics(name, file, robot, existing);
+  FileSet set{folder_of(file.string()), {{file.filename().string(), text}}};
+  if (!existing.empty() && existing != text) {
+    set.files.insert(set.files.begin(), {backup_name(file, newest_backup(file) + 1), existing});
+    files.said.note({name, 0},
+                    fmt::format("the file before is kept as {}", set.files.front().name));
+  }
+  files.sets.push_back(std::move(set));
   files.said.note({name, 0}, "has the origins of joints; their zeros are in them");
 }
 

@@ -20,6 +20,7 @@
 #include "kinecal/files/csv/csv_columns.hpp"
 #include "kinecal/files/csv/csv_mapping.hpp"
 #include "kinecal/files/csv/csv_table.hpp"
+#include "kinecal/files/csv/csv_units.hpp"
 #include "kinecal/files/csv/read_csv_samples.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/images/png_bytes.hpp"

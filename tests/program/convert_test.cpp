@@ -45,10 +45,20 @@ TEST_F(Convert, ReportsErrorsAndWritesNothing) {
   EXPECT_FALSE(fs::exists(folder_ / "samples.yaml"));
 }
 
-TEST_F(Convert, AsksForTheColumnsOfATable) {
+TEST_F(Convert, ATableIsReadByTheColumnsBesideItOrAsksForThem) {
   const Outcome made = kinecal("convert tracker.csv samples.yaml");
-  EXPECT_EQ(made.code, 1);
-  EXPECT_THAT(made.err, HasSubstr("--columns FILE"));
+  EXPECT_EQ(made.code, 0);
+  EXPECT_THAT(made.err, HasSubstr("tracker.csv: is a table, read by columns.yaml"));
+  EXPECT_THAT(kinecal("inspect tracker.csv").out, HasSubstr("60 samples"));
+  fs::remove(folder_ / "columns.yaml");
+  for (const char* words : {"convert tracker.csv again.yaml", "inspect tracker.csv"}) {
+    const Outcome refused = kinecal(words);
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_THAT(
+        refused.err,
+        AllOf(HasSubstr("kinecal init --urdf robot.urdf --from tracker.csv"),
+              HasSubstr("kinecal convert tracker.csv samples.yaml --columns columns.yaml")));
+  }
 }
 
 TEST_F(Convert, TakesSamplesForWhatTheyAreWhateverTheirName) {

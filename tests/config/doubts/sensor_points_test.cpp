@@ -57,6 +57,31 @@ TEST_F(SensorPoints, OfATrackerFarAwayAreRight) {
   EXPECT_THAT(found().doubts, IsEmpty());
 }
 
+/// What a controller says of the point of the tool, in the digits of its screen.
+TEST_F(SensorPoints, ThatTheControllerComputedAreADoubt) {
+  const Robot robot = parse_urdf(test::kArmUrdf, "arm.urdf");
+  const RuntimeChain arm = make_chain(robot, "base_link", "tool");
+  const auto computed = [&](double zero, double step, const Pose<double>& table_T_base) {
+    for (Sample& sample : samples) {
+      for (double& q : sample.joint_positions) q = 1e-5 * std::round(1e5 * q);
+      const Pose<double> base_T_tool = forward_kinematics(arm, [&](const std::string& joint) {
+        return *sample.position(joint) + (joint == "lift" ? zero : 0.0);
+      });
+      const Vector3<double> p = table_T_base * (base_T_tool * Vector3<double>(0.1, 0.0, 0.15));
+      sample.observations[0].features = {{"tool", Vector3<double>::Zero()}};
+      sample.observations[1].features = {
+          {"tracker_frame", step * Vector3<double>((p / step).array().round().matrix())}};
+    }
+    return found().doubts;
+  };
+  const Pose<double> table{rotation_from_rpy(Vector3<double>(0.0, 0.0, 0.4)), {0.5, -0.2, 0.1}};
+  const auto is_computed = HasSubstr("they were computed from the joints, not measured");
+  EXPECT_THAT(computed(0.0, 1e-6, {}),
+              ElementsAre(AllOf(is_computed, HasSubstr("in the robot's base"))));
+  EXPECT_THAT(computed(0.0, 1e-5, table), ElementsAre(is_computed)) << "in a table's frame";
+  EXPECT_THAT(computed(0.02, 1e-6, {}), IsEmpty()) << "a zero that is wrong";
+}
+
 TEST_F(SensorPoints, ThatNeverChangeAreAnErrorIfTheArmMoves) {
   for (Sample& sample : samples) sample.observations[1] = samples[0].observations[1];
   EXPECT_THAT(found().errors,

@@ -389,6 +389,75 @@ TEST_F(ReadCsvSamples, ReportsAMissingColumnAndTheNearestName) {
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("column 'q1' occurs twice")));
 }
 
+TEST_F(ReadCsvSamples, QuotesTheHeaderThatItRead) {
+  (void)read(std::string("# session 7\n") + kTable, with(kMapping, "q1", "j1"));
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(HasSubstr("line 2 was read as the header: 'q1, q2, l, dl, x, y, z")));
+}
+
+TEST_F(ReadCsvSamples, ARowOfUnitsMustAgreeWithTheColumnsFile) {
+  const std::string units = "deg,deg,mm,mm,mm,mm,mm,mm,mm,mm,px,px\n";
+  const auto below = [&](const std::string& row) { return with(kTable, "v\n", "v\n" + row); };
+  const auto samples = read(below(units));
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_EQ(samples[0].source, (folder_ / "t.csv").string() + ":3");
+  (void)read(below(with(units, "deg", "rad")));
+  EXPECT_THAT(
+      diagnostics_.errors,
+      ElementsAre(AllOf(HasSubstr("m.yaml:3: column 'q1' is in rad, by the row of units in"),
+                        HasSubstr("t.csv:2; write 'unit: radians'"))));
+  (void)read(below(with(units, "mm,mm,mm,mm,mm,mm,mm,mm", "mm,mm,cm,mm,mm,mm,mm,mm")));
+  EXPECT_THAT(diagnostics_.errors, testing::Each(HasSubstr("column 'x' is in cm")));
+}
+
+TEST_F(ReadCsvSamples, ReadsPosesThatASensorSaw) {
+  const auto samples = read(
+      "x,y,z,rx,ry,rz,mx,my,mz,mw,mi,mj,mk\n1,2,3,0,0,0,10,20,30,0,1,0,0\n1,2,3,0,0,0,,,,,,,\n",
+      "poses: {flange: {form: ur, columns: [x, y, z, rx, ry, rz]}}\n"
+      "observations:\n - {sensor: object, frame: target, form: quaternion_xyzw, constant_poses: "
+      "[[0, "
+      "0, 0, 0, 0, 0, 1]]}\n"
+      " - {sensor: camera, frame: camera, form: abb, poses: [[mx, my, mz, mw, mi, mj, mk]]}\n");
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 2u);
+  EXPECT_EQ(*samples[0].observation("object")->features[0].rotation, Eigen::Matrix3d::Identity());
+  const Feature& seen = samples[0].observation("camera")->features[0];
+  EXPECT_LE((seen.point - Vector3<double>(0.01, 0.02, 0.03)).norm(), 1e-15);
+  EXPECT_EQ((*seen.rotation)(1, 1), -1.0);
+  EXPECT_FALSE(samples[1].observation("camera")->features[0].point.allFinite());
+}
+
+TEST_F(ReadCsvSamples, DoubtsRotationVectorsOfMoreThanHalfATurn) {
+  const std::string mapping =
+      "poses: {flange: {form: ur, unit: millimetres, angles: degrees, columns: [1, 2, 3, 4, 5, "
+      "6]}}\n"
+      "observations: [{sensor: arm, frame: hand, constant: [0, 0, 0]}]\n";
+  (void)read("x,y,z,rx,ry,rz\n1,2,3,170,0,150\n1,2,3,-160,20,160\n1,2,3,0,0,9\n", mapping);
+  EXPECT_THAT(diagnostics_.warnings,
+              ElementsAre(AllOf(HasSubstr("2 poses of 'flange'"), HasSubstr("up to 227 deg"))));
+  (void)read("x,y,z,rx,ry,rz\n1,2,3,170,0,0\n1,2,3,0,0,179\n", mapping);
+  EXPECT_THAT(diagnostics_.warnings, IsEmpty());
+}
+
+TEST_F(ReadCsvSamples, ATableWhereSamplesGoIsReadByTheColumnsBesideIt) {
+  write("log.csv", kTable);
+  const std::string log = (folder_ / "log.csv").string();
+  EXPECT_TRUE(is_csv_table(log));
+  try {
+    (void)read_csv_by_columns_beside(log, diagnostics_);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), AllOf(HasSubstr("is a table, not samples"), HasSubstr("kinecal convert"),
+                                HasSubstr("--columns columns.yaml")));
+  }
+  write("columns.yaml", kMapping);
+  EXPECT_THAT(read_csv_by_columns_beside(log, diagnostics_), testing::SizeIs(1));
+  EXPECT_THAT(diagnostics_.notes, testing::Contains(HasSubstr("columns.yaml")));
+  write("samples.txt", "joint_states:\n  name: [a]\n");
+  EXPECT_FALSE(is_csv_table((folder_ / "samples.txt").string()));
+}
+
 TEST_F(ReadCsvSamples, SuspectsTheSeparatorWhereThereIsOneColumn) {
   (void)read(kTable, std::string("separator: semicolon\n") + kMapping);
   EXPECT_THAT(diagnostics_.errors, testing::Each(HasSubstr("is the separator right?")));

@@ -57,6 +57,27 @@ TEST(PoseNumbers, EachFormOfOnePoseGivesThisPose) {
   expect_same("matrix", matrix);
 }
 
+TEST(PoseNumbers, ControllersAreKnownByName) {
+  for (const char* name : {"fairino", "yaskawa", "techman", "dobot", "elite"}) {
+    expect_same(name, {400, -200, 1100, 10, 20, 30});
+  }
+  expect_same("jaka", {400, -200, 1100, 10 * kDegree, 20 * kDegree, 30 * kDegree});
+  expect_same("nachi", {400, -200, 1100, 30, 20, 10});
+  const Eigen::Matrix3d& r = expected().rotation;
+  const Eigen::Vector3d xyz = r.eulerAngles(0, 1, 2) / kDegree,
+                        zyz = r.eulerAngles(2, 1, 2) / kDegree;
+  expect_same("staubli", {400, -200, 1100, xyz.x(), xyz.y(), xyz.z()});
+  expect_same("doosan", {400, -200, 1100, zyz.x(), zyz.y(), zyz.z()});
+}
+
+TEST(PoseNumbers, ARotationVectorOfMoreThanATurnIsNone) {
+  PoseForm form = *pose_form("rotation_vector");
+  form.degrees = true;
+  EXPECT_THAT(pose_from_numbers(form, std::vector<double>{0, 0, 0, 300, 250, 0}).wrong,
+              HasSubstr("write their form: fixed_xyz"));
+  EXPECT_THAT(pose_from_numbers(form, std::vector<double>{0, 0, 0, 300, 0, 0}).wrong, IsEmpty());
+}
+
 TEST(PoseNumbers, AnglesTurnAboutTheirAxesInTheirOrder) {
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;

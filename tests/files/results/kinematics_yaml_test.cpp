@@ -130,5 +130,19 @@ TEST(KinematicsYaml, AFileOfUrIsNotReplacedByAnotherRobot) {
               HasSubstr("has no joint 'shoulder_pan_joint'"));
 }
 
+TEST(KinematicsYaml, NamesTheJointsOfAUrdfThatWasNotMadeWithTheFile) {
+  const std::string existing = kinematics_yaml(ur(), {}, "", "k.yaml");
+  EXPECT_EQ(kinematics_difference(ur(), existing, "k.yaml"), "");
+  const std::vector<JointPatch> moved = {
+      {"wrist_1_joint", 0.0, {Matrix3<double>::Identity(), {3e-4, 0.0, 0.0}}}};
+  EXPECT_EQ(kinematics_difference(ur(), kinematics_yaml(ur(), moved, "", "k.yaml"), "k.yaml"),
+            "wrist_1 by 0.3 mm");
+  EXPECT_THAT(kinematics_difference(ur(), kinematics_yaml(ur(), patches(), "", "k.yaml"), "k.yaml"),
+              HasSubstr("upper_arm by"));
+  std::string broken = existing;
+  broken.replace(broken.find("    z:"), 6, "    w:");
+  EXPECT_THROW((void)kinematics_difference(ur(), broken, "k.yaml"), InputError);
+}
+
 }  // namespace
 }  // namespace kinecal

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <locale>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/kinematics/chain.hpp"
 #include "support/data.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace kinecal {
 namespace {
@@ -357,6 +359,32 @@ TEST(ReadUrdf, ReadsFetch) {
   EXPECT_EQ(torso.limits->upper, 0.38615);
   EXPECT_EQ(torso.origin.translation, Vector3<double>(-0.086875, 0.0, 0.37743));
   EXPECT_NO_THROW((void)make_chain(robot, "base_link", "gripper_link"));
+}
+
+TEST(ReadUrdf, TakesTheUrdfOutOfWhatRosPrints) {
+  const test::TemporaryFolder folder;
+  const std::string file = (folder.path() / "arm.urdf").string(), urdf = elbow(kLinks);
+  const auto text_of = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    return read_urdf_text(file);
+  };
+  EXPECT_EQ(text_of(urdf), urdf);
+  EXPECT_EQ(text_of("String value is: " + urdf), urdf) << "ros2 param get";
+  std::string indented = urdf;
+  for (std::size_t at = 0; (at = indented.find('\n', at)) != std::string::npos; at += 5) {
+    indented.insert(at + 1, "    ");
+  }
+  EXPECT_EQ(parse_urdf(text_of("/state:\n  ros__parameters:\n   robot_description: |\n    " +
+                               indented + "\n"),
+                       file)
+                .joints()
+                .size(),
+            2u)
+      << "ros2 param dump";
+  std::string quoted;
+  for (const char c : urdf) quoted += c == '\n' ? "\\n" : c == '"' ? "\\\"" : std::string(1, c);
+  EXPECT_EQ(text_of("data: \"" + quoted + "\"\n---\n"), urdf) << "ros2 topic echo";
+  EXPECT_EQ(text_of("no robot\n"), "no robot\n");
 }
 
 TEST(ReadUrdf, ReadsTheOtherRobotsOfTheData) {

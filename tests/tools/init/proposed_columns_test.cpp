@@ -142,9 +142,35 @@ TEST(ProposedColumns, RefuseWhatTheyWouldHaveToGuess) {
   EXPECT_THAT(refusal_of("pan,shoulder_lift,elbow,wrist_1,wrist_2,wrist_3,x,y,z\n" + row + row),
               HasSubstr("5 of the 6 joints that move 'reflector' have a column, and "
                         "'shoulder_pan_joint' has none"));
-  EXPECT_THAT(refusal_of("q1;q2;q3;q4;q5;q6;x;y;z\n0,1;0,2;0,3;0,4;0,5;0,6;1,5;2;3\n0,1;0,2;0,3;0,"
-                         "4;0,5;0,6;1,5;2;3\n"),
-              HasSubstr("log.csv:2: '0,1': write a decimal point, not a comma"));
+}
+
+TEST(ProposedColumns, ReadADecimalCommaBetweenSemicolons) {
+  const std::string row = "0,1;0,2;0,3;0,4;0,5;0,6;1,5;2;3\n";
+  EXPECT_THAT(columns_of("q1;q2;q3;q4;q5;q6;x;y;z\n" + row + row),
+              AllOf(HasSubstr("separator: semicolon\n"),
+                    HasSubstr("unit: radians  # by its values, up to 0.6\n")));
+}
+
+TEST(ProposedColumns, TakeUnitsOfARowBelowTheHeaderAndPassComments) {
+  const std::string row = std::string(kSix) + ",1,2,3\n";
+  EXPECT_THAT(
+      columns_of("# session 7\nq1,q2,q3,q4,q5,q6,x,y,z\ndeg,deg,deg,deg,deg,deg,mm,mm,mm\n" + row +
+                 row),
+      AllOf(HasSubstr("joints:\n  unit: degrees\n"), HasSubstr("unit: millimetres\n"),
+            HasSubstr("shoulder_pan_joint: q1\n")));
+  EXPECT_THAT(refusal_of("# session 7\nk1,k2,k3,k4,k5,k6,x,y,z\n" + row + row),
+              HasSubstr("line 2 was read as the header: 'k1, k2, k3"));
+}
+
+TEST(ProposedColumns, AskWhichOfTwoPointsWasMeasured) {
+  const std::string head = "q1,q2,q3,q4,q5,q6,", row = std::string(kSix) + ",1,2,3";
+  EXPECT_THAT(refusal_of(head + "X,Y,Z,TX,TY,TZ\n" + row + ",4,5,6\n" + row + ",4,5,6\n"),
+              AllOf(HasSubstr("both 'X' and 'TX'"), HasSubstr("computed")));
+  EXPECT_THAT(columns_of(head + "TX,TY,TZ\n" + row + "\n" + row + "\n"), HasSubstr("[TX, TY, TZ]"));
+  EXPECT_THAT(columns_of(head + "x,y,z,fx,fy,fz,tx,ty,tz\n" + row + ",4,5,6,7,8,9\n" + row +
+                         ",4,5,6,7,8,9\n"),
+              HasSubstr("[x, \"y\", z]"))
+      << "torques";
 }
 
 TEST(ProposedColumns, RefuseWhatIsNoTable) {

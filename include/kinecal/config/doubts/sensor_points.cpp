@@ -4,8 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <set>
 #include <span>
@@ -249,6 +252,101 @@ inline void compare_spreads(const RecordedPoints& fixed, const RecordedPoints& a
   }
 }
 
+/// Points of a fixed sensor, explained by the arm of the URDF.
+struct ComputedFit {
+  Pose<double> sensor_T_base;
+  double rms = 0.0;       ///< of a coordinate of what is left, metres
+  double rounding = 0.0;  ///< the same, of the digits of joints and points alone
+};
+
+/// The step of which all numbers are multiples: 1e-3, 1e-4 ...; 0 if they have all digits of a double.
+/// @param unit  in which they were written: pi / 180 for degrees
+[[nodiscard]] inline double step_of(std::span<const double> numbers, double unit) {
+  for (double step = 1e-2; step > 1e-8; step /= 10.0) {
+    const auto is_multiple = [&](double number) {
+      const double steps = number / (unit * step);
+      return std::abs(steps - std::round(steps)) < 1e-4;
+    };
+    if (std::all_of(numbers.begin(), numbers.end(), is_multiple)) return unit * step;
+  }
+  return 0.0;
+}
+
+/// The fit of  p = sensor_T_base (base_T_arm (a + t))  for all points, with one offset t in the arm's frame.
+/// @param fixed, arm  their points in the same order
+[[nodiscard]] inline ComputedFit fit_computed(const RecordedPoints& fixed,
+                                              const RecordedPoints& arm,
+                                              std::span<const Sample> samples) {
+  constexpr std::size_t kMostPoints = 500;
+  const auto n = static_cast<Eigen::Index>(std::min(kMostPoints, fixed.points.size()));
+  const std::vector<Vector3<double>> in_base = points_in_base(arm, samples);
+  std::vector<Matrix3<double>> turns;
+  std::vector<double> joints, coordinates;
+  Eigen::Matrix3Xd from(3, n), to(3, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Sample& sample = samples[fixed.samples[at]];
+    turns.push_back(forward_kinematics(arm.chain, [&](const std::string& joint) {
+                      return sample.position(joint).value_or(0.0);
+                    }).rotation);
+    joints.insert(joints.end(), sample.joint_positions.begin(), sample.joint_positions.end());
+    coordinates.insert(coordinates.end(), fixed.points[at].begin(), fixed.points[at].end());
+    from.col(i) = in_base[at];
+    to.col(i) = fixed.points[at];
+  }
+  const Eigen::Matrix4d start = Eigen::umeyama(from, to, false);
+  ComputedFit fit{{start.topLeftCorner<3, 3>(), start.topRightCorner<3, 1>()}};
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+  constexpr int kSteps = 20;
+  for (int step = 0; step <= kSteps; ++step) {
+    Eigen::Matrix<double, 9, 9> information = Eigen::Matrix<double, 9, 9>::Identity() * 1e-12;
+    Eigen::Matrix<double, 9, 1> gradient = Eigen::Matrix<double, 9, 1>::Zero();
+    double squares = 0.0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Matrix3<double> turn = fit.sensor_T_base.rotation * turns[static_cast<std::size_t>(i)];
+      const Eigen::Vector3d turned = fit.sensor_T_base.rotation * from.col(i) + turn * offset;
+      const Eigen::Vector3d left = turned + fit.sensor_T_base.translation - to.col(i);
+      Eigen::Matrix<double, 3, 9> jacobian;
+      jacobian << -cross_matrix<double>(turned), Eigen::Matrix3d::Identity(), turn;
+      information += jacobian.transpose() * jacobian;
+      gradient += jacobian.transpose() * left;
+      squares += left.squaredNorm();
+    }
+    fit.rms = std::sqrt(squares / (3.0 * static_cast<double>(n)));
+    if (step == kSteps) break;
+    const Eigen::Matrix<double, 9, 1> change = -information.ldlt().solve(gradient);
+    fit.sensor_T_base.rotation =
+        exp(Vector3<double>(change.head<3>())) * fit.sensor_T_base.rotation;
+    fit.sensor_T_base.translation += change.segment<3>(3);
+    offset += change.tail<3>();
+  }
+  const double lever = spread_of(in_base),
+               turn = std::max(step_of(joints, 1.0), step_of(joints, std::numbers::pi / 180.0));
+  fit.rounding = std::hypot(step_of(coordinates, 1.0), lever * turn) / std::sqrt(12.0);
+  return fit;
+}
+
+/// Doubt: points that agree with the URDF to a rounding error, which the controller computed from the joints.
+/// Points with all digits of a double are doubted only if the sensor stands in the robot's base: simulated ones are exact, too.
+inline void check_computed(const RecordedPoints& fixed, const RecordedPoints& arm,
+                           std::span<const Sample> samples, Diagnostics& diagnostics) {
+  constexpr double kMost = 5e-5, kDigits = 1e-8, kBase = 1e-4;  // metres
+  constexpr std::size_t kLeast = 6;                             // points, of 9 unknowns
+  if (fixed.samples != arm.samples || fixed.points.size() < kLeast || fixed.is_constant) return;
+  const ComputedFit fit = fit_computed(fixed, arm, samples);
+  const Matrix3<double>& turn = fit.sensor_T_base.rotation;
+  const bool in_base = fit.sensor_T_base.translation.norm() < kBase &&
+                       (turn - Matrix3<double>(turn.array().round().matrix())).norm() < kBase;
+  const double most = std::max(2.0 * fit.rounding, in_base ? kDigits : 0.0);
+  if (!(fit.rms < std::min(kMost, most))) return;
+  diagnostics.doubt(
+      place_of(samples, fixed.samples.front()),
+      fmt::format("points of sensor '{}' agree with the URDF to {:.2g} mm{}: they were computed "
+                  "from the joints, not "
+                  "measured; give points of an instrument",
+                  fixed.model.name, 1e3 * fit.rms, in_base ? ", in the robot's base" : ""));
+}
+
 void check_spreads(const Config& config, const Robot& robot, std::span<const Sample> samples,
                    Diagnostics& diagnostics) {
   const std::vector<RecordedPoints> all = recorded_points(config, robot, samples);
@@ -269,8 +367,10 @@ void check_spreads(const Config& config, const Robot& robot, std::span<const Sam
       // The view of a moving camera depends on its mount, which may be unknown.
       if (!arm->model.type.starts_with("chain")) continue;
       if (!compared.insert({fixed, arm}).second || fixed->points.size() < 3) continue;
-      compare_spreads(together_with(*arm, *fixed), together_with(*fixed, *arm), samples,
-                      reach_of(robot, arm->chain), diagnostics);
+      const RecordedPoints of_fixed = together_with(*arm, *fixed),
+                           of_arm = together_with(*fixed, *arm);
+      compare_spreads(of_fixed, of_arm, samples, reach_of(robot, arm->chain), diagnostics);
+      check_computed(of_fixed, of_arm, samples, diagnostics);
     }
   }
 }

@@ -48,7 +48,8 @@ struct RecordedPoints {
 void check_sensor_points(const Config& config, const Robot& robot, std::span<const Sample> samples,
                          Diagnostics& diagnostics);
 
-/// Error or doubt: an arm's points and those of a fixed sensor spread differently.
+/// Error or doubt: an arm's points and those of a fixed sensor spread differently.  Doubt: they agree with the URDF to a
+/// rounding error, because a controller computed them from the joints.
 void check_spreads(const Config& config, const Robot& robot, std::span<const Sample> samples,
                    Diagnostics& diagnostics);
 

@@ -11,9 +11,13 @@
 namespace kinecal::detail {
 
 std::optional<std::size_t> CsvColumns::find(const CsvColumn& column) {
-  const auto same = std::find(header_.begin(), header_.end(), column.name);
+  auto same = std::find(header_.begin(), header_.end(), column.name);
+  if (same == header_.end() && column.name.size() > 1 && column.name.starts_with('#')) {
+    same =
+        std::find(header_.begin(), header_.end(), column.name.substr(1));  // the mark of a comment
+  }
   if (same != header_.end()) {
-    if (std::find(same + 1, header_.end(), column.name) != header_.end()) {
+    if (std::find(same + 1, header_.end(), *same) != header_.end()) {
       error(column, "occurs twice in the table; give its number, from 1");
     }
     return same - header_.begin();
@@ -31,9 +35,9 @@ std::optional<std::size_t> CsvColumns::find(const CsvColumn& column) {
     error(column, "is a name, but the table has no header; give its number, from 1");
   } else {
     error(column,
-          fmt::format("is not in the table's header{}{}",
+          fmt::format("is not in the table's header{}{}; {}",
                       columns_ == 1 ? ", which has one column: is the separator right?" : "",
-                      did_you_mean(column.name, header_)));
+                      did_you_mean(column.name, header_), header_text_));
   }
   return std::nullopt;
 }

@@ -4,10 +4,10 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "kinecal/files/csv/csv_mapping.hpp"
+#include "kinecal/files/csv/csv_table.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/text/nearest_name.hpp"
 
@@ -16,9 +16,11 @@ namespace kinecal::detail {
 /// A table whose columns are found by name or number.
 class CsvColumns {
  public:
-  /// @param header  names of the columns; empty if the table has none
-  CsvColumns(std::vector<std::string> header, std::size_t columns, Diagnostics& diagnostics)
-      : header_(std::move(header)), columns_(columns), diagnostics_(diagnostics) {}
+  CsvColumns(const CsvTable& table, Diagnostics& diagnostics)
+      : header_(table.header.cells),
+        header_text_(table.header_text()),
+        columns_(table.columns),
+        diagnostics_(diagnostics) {}
 
   /// The index of a column, from 0; an error and nullopt if there is no such column.
   [[nodiscard]] std::optional<std::size_t> find(const CsvColumn& column);
@@ -27,6 +29,7 @@ class CsvColumns {
   void error(const CsvColumn& column, const std::string& what);
 
   std::vector<std::string> header_;
+  std::string header_text_;  ///< for messages
   std::size_t columns_;
   Diagnostics& diagnostics_;
 };

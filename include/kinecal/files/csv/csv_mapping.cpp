@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,6 +61,59 @@ inline constexpr CsvUnitNames kSpeeds{"m/s", "mm/s", {false, true}};
 inline void note_csv_unit(const ConfigMap& map, const CsvUnitNames& names) {
   if (map.peek("unit") != nullptr) return;
   map.note(map.place(), fmt::format("unit is not given: {}", names.si));
+}
+
+/// `form:`, `unit:`, `angles:` and `inverse:` of poses; nullopt after an error
+[[nodiscard]] inline std::optional<PoseForm> read_csv_form(ConfigMap& map) {
+  const std::string name = map.required_text("form").value_or("quaternion_xyzw");
+  std::optional<PoseForm> form = pose_form(name);
+  if (!form) {
+    map.error(map.place(), fmt::format("form '{}' is none of {}; angles about other axes are "
+                                       "fixed_zyx, euler_xyz and so on{}",
+                                       name, fmt::join(pose_form_names(), ", "),
+                                       map.did_you_mean(name, pose_form_names())));
+  }
+  PoseForm read = form.value_or(PoseForm{});
+  const std::string unit = read_choice(map, "unit", read.millimetres ? "millimetres" : "metres",
+                                       {"metres", "millimetres"});
+  read.millimetres = unit == "millimetres";
+  if (read.has_angles()) {
+    const std::string angles =
+        read_choice(map, "angles", read.degrees ? "degrees" : "radians", {"radians", "degrees"});
+    read.degrees = angles == "degrees";
+  }
+  read.inverse = map.flag("inverse", false);
+  return form ? std::optional(read) : std::nullopt;
+}
+
+/// `poses:` and `constant_poses:` of an observation
+inline void read_csv_object_poses(ConfigMap& map, CsvObservation& observation) {
+  const std::optional<PoseForm> form = read_csv_form(map);
+  observation.form = form.value_or(PoseForm{});
+  const auto has_size = [&](const ConfigEntry& entry) {
+    const std::size_t size = entry.value.is_list() ? entry.value.items.size() : 0;
+    if (!form || observation.form.has_size(size)) return form.has_value();
+    map.error(entry.place,
+              fmt::format("{}: {} is not a list of {}", entry.key, describe_config(entry.value),
+                          observation.form.columns_text()));
+    return false;
+  };
+  for (const ConfigEntry& entry : map.list("poses")) {
+    if (has_size(entry)) observation.poses.push_back(read_csv_sum(map, entry.value, entry.place));
+  }
+  for (const ConfigEntry& entry : map.list("constant_poses")) {
+    if (!has_size(entry)) continue;
+    std::vector<double> numbers;
+    for (const YamlNode& node : entry.value.items)
+      numbers.push_back(config_number(node).value_or(NAN));
+    const NumberedPose read = pose_from_numbers(observation.form, numbers);
+    const bool is_finite = read.pose.translation.allFinite() && read.pose.rotation.allFinite();
+    if (!read.wrong.empty() || !is_finite) {
+      map.error(entry.place,
+                "constant_poses: " + (is_finite ? read.wrong : "not all are finite numbers"));
+    }
+    observation.constant_poses.push_back(read.pose);
+  }
 }
 
 /// `points:` (three columns each) or `pixels:` (two)
@@ -124,7 +178,8 @@ inline void read_csv_frame(ConfigMap& map, CsvObservation& observation) {
 
 /// `ids:` or `id_columns:`, one for each feature
 inline void read_csv_ids(ConfigMap& map, CsvObservation& observation) {
-  const std::size_t features = observation.points.size() + observation.constants.size();
+  const std::size_t features = observation.points.size() + observation.constants.size() +
+                               observation.poses.size() + observation.constant_poses.size();
   const ConfigEntry *ids = map.find("ids"), *columns = map.find("id_columns");
   if (ids != nullptr && columns != nullptr) {
     map.error(columns->place, "has ids and id_columns; give one of them");
@@ -162,7 +217,7 @@ inline void read_csv_own_table(ConfigMap& map, CsvObservation& observation) {
   const auto name = config_text(table->value);
   if (!name) return map.error(table->place, describe_config(table->value) + " is not a file");
   observation.table = (std::filesystem::path(table->place.file).parent_path() / *name).string();
-  if (!observation.constants.empty()) {
+  if (!observation.constants.empty() || !observation.constant_poses.empty()) {
     map.error(table->place, "has a table and a constant; give one of them");
   }
 }
@@ -185,17 +240,21 @@ inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {
   observation.sensor = map.required_text("sensor").value_or("");
   if (!observation.sensor.empty()) map.set_subject("sensor '" + observation.sensor + "'");
   read_csv_frame(map, observation);
-  const bool has_pixels = map.peek("pixels") != nullptr;
+  const auto has = [&](const char* key) { return map.peek(key) != nullptr; };
+  const bool has_pixels = has("pixels"), has_poses = has("poses") || has("constant_poses");
   if (map.peek("points") != nullptr) note_csv_unit(map, kLengths);
-  if (!has_pixels) observation.unit = read_csv_unit(map, kLengths);
+  if (has_poses) read_csv_object_poses(map, observation);
+  if (!has_pixels && !has_poses) observation.unit = read_csv_unit(map, kLengths);
   read_csv_constant(map, observation);
   read_csv_points(map, "points", 3, observation);
   read_csv_points(map, "pixels", 2, observation);
-  const int kinds = (has_pixels ? 1 : 0) + (map.peek("points") != nullptr ? 1 : 0) +
-                    (map.peek("constant") != nullptr ? 1 : 0);
+  int kinds = 0;
+  for (const char* key : {"points", "pixels", "constant", "poses", "constant_poses"})
+    kinds += has(key) ? 1 : 0;
   if (kinds != 1) {
-    map.error(map.place(), "has " + std::string(kinds == 0 ? "none" : "more than one") +
-                               " of points, pixels and constant; give exactly one");
+    map.error(map.place(),
+              "has " + std::string(kinds == 0 ? "none" : "more than one") +
+                  " of points, pixels, poses, constant and constant_poses; give exactly one");
   }
   read_csv_ids(map, observation);
   read_csv_own_table(map, observation);
@@ -237,24 +296,8 @@ void read_csv_poses(ConfigMap& file, CsvMapping& mapping) {
     auto map = poses->map(entry, "pose of '" + entry.key + "'");
     if (!map) continue;
     CsvPose pose{entry.key};
-    const std::string name = map->required_text("form").value_or("quaternion_xyzw");
-    const auto form = pose_form(name);
-    if (!form) {
-      map->error(map->place(), fmt::format("form '{}' is none of {}; angles about other axes are "
-                                           "fixed_zyx, euler_xyz and so on{}",
-                                           name, fmt::join(pose_form_names(), ", "),
-                                           map->did_you_mean(name, pose_form_names())));
-    }
+    const std::optional<PoseForm> form = read_csv_form(*map);
     pose.form = form.value_or(PoseForm{});
-    const std::string unit = read_choice(
-        *map, "unit", pose.form.millimetres ? "millimetres" : "metres", {"metres", "millimetres"});
-    pose.form.millimetres = unit == "millimetres";
-    if (pose.form.has_angles()) {
-      const std::string angles = read_choice(
-          *map, "angles", pose.form.degrees ? "degrees" : "radians", {"radians", "degrees"});
-      pose.form.degrees = angles == "degrees";
-    }
-    pose.form.inverse = map->flag("inverse", false);
     if (const ConfigEntry* columns = map->find("columns")) {
       pose.columns = read_csv_sum(*map, columns->value, columns->place);
       if (form && !pose.form.has_size(pose.columns.size())) {

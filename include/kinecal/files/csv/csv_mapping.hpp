@@ -26,6 +26,10 @@
 //      pixels: [[u1, v1], [u2, v2]]
 //      ids: [4, 7]                  # of the points, pixels or constants: what pairs the sensors'
 //                                   #   features.  From columns: id_columns: [tag1, tag2]
+//    - sensor: camera               # poses of an object: form, unit, angles and inverse as under poses
+//      frame: camera
+//      form: rotation_vector
+//      poses: [[mx, my, mz, mrx, mry, mrz]]     # or constant_poses: numbers, the same in every row
 //    - sensor: camera               # features in a table of their own, a row for each feature:
 //      frame: optical_frame
 //      table: corners.csv           # beside this file
@@ -92,10 +96,13 @@ struct CsvObservation {
   CsvUnit unit;                               ///< of the columns of its points
   std::vector<std::array<CsvSum, 3>> points;  ///< the third sum of a pixel is empty: zero
   std::vector<Vector3<double>> constants;     ///< metres
-  std::vector<int> ids;                       ///< of each point or constant; empty: not given here
-  CsvSum id_columns;                          ///< one column for each; empty: see `ids`
-  std::string table = {};                     ///< path of a table of its own; empty: the samples'
-  CsvSum match = {};                          ///< one column of both tables; empty: all rows belong
+  PoseForm form = {};                         ///< of its poses
+  std::vector<CsvSum> poses = {};             ///< each: a column for each number of the form
+  std::vector<Pose<double>> constant_poses = {};  ///< metres
+  std::vector<int> ids;                           ///< of each feature; empty: not given here
+  CsvSum id_columns;                              ///< one column for each; empty: see `ids`
+  std::string table = {};  ///< path of a table of its own; empty: the samples'
+  CsvSum match = {};       ///< one column of both tables; empty: all rows belong
 };
 
 /// What the columns of a table mean.

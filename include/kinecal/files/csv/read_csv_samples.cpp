@@ -5,23 +5,31 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "kinecal/files/csv/csv_columns.hpp"
 #include "kinecal/files/csv/csv_table.hpp"
+#include "kinecal/files/csv/csv_units.hpp"
+#include "kinecal/files/poses/pose_table.hpp"
 #include "kinecal/files/samples/feature_id_parameters.ipp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/samples/sample.hpp"
+#include "kinecal/text/shell_command.hpp"
 
 namespace kinecal {
 
@@ -33,15 +41,26 @@ namespace {
 /// Converts rows to samples.  After a few bad cells it only counts the rest.
 class CsvSamples {
  public:
-  CsvSamples(const CsvMapping& mapping, CsvColumns columns, std::string file,
+  /// @param units  the row of units below the header; without cells if the table has none
+  CsvSamples(const CsvMapping& mapping, CsvColumns columns, const CsvRow& units, std::string file,
              Diagnostics& diagnostics)
       : mapping_(mapping),
         columns_(std::move(columns)),
+        units_(units),
         file_(std::move(file)),
         diagnostics_(diagnostics) {
-    for (const CsvJoint& joint : mapping.joints) joints_.push_back(find(joint.columns));
-    for (const CsvPose& pose : mapping.poses) poses_.push_back(find(pose.columns));
-    for (const CsvJoint& joint : mapping.velocities) velocities_.push_back(find(joint.columns));
+    for (const CsvJoint& joint : mapping.joints) {
+      joints_.push_back(find(joint.columns));
+      check_units(joints_.back(), joint.unit, "unit");
+    }
+    for (const CsvPose& pose : mapping.poses) {
+      poses_.push_back(find(pose.columns));
+      check_pose_units(poses_.back(), pose.form);
+    }
+    for (const CsvJoint& joint : mapping.velocities) {
+      velocities_.push_back(find(joint.columns));
+      check_units(velocities_.back(), joint.unit, "unit");
+    }
     for (const CsvCondition& condition : mapping.conditions) {
       conditions_.push_back(find(condition.columns));
     }
@@ -50,8 +69,15 @@ class CsvSamples {
       observations_.push_back(&observation);
       frames_.push_back(find(observation.frame_column));
       ids_.push_back(find(observation.id_columns));
+      for (const CsvSum& pose : observation.poses) {
+        object_poses_.push_back(find(pose));
+        check_pose_units(object_poses_.back(), observation.form);
+      }
       for (const auto& point : observation.points) {
-        for (const CsvSum& sum : point) points_.push_back(find(sum));
+        for (const CsvSum& sum : point) {
+          points_.push_back(find(sum));
+          check_units(points_.back(), observation.unit, "unit");
+        }
       }
     }
   }
@@ -83,16 +109,25 @@ class CsvSamples {
     for (std::size_t i = 0; i < conditions_.size(); ++i) {
       sample.conditions[mapping_.conditions[i].name] = value(row, conditions_[i], {});
     }
-    std::size_t next = 0;
+    std::size_t next = 0, next_pose = 0;
     for (std::size_t i = 0; i < observations_.size(); ++i) {
-      add_features(row, *observations_[i], frames_[i], ids_[i], next, sample);
+      add_features(row, *observations_[i], frames_[i], ids_[i], next, next_pose, sample);
     }
     if (!complete) return std::nullopt;
     return sample;
   }
 
-  /// Reports the number of bad cells that were only counted.
+  /// Reports the number of bad cells that were only counted, and rotation vectors that are unlikely.
   void finish() {
+    for (const auto& [name, rows] : over_half_turn_) {
+      if (rows.first < 2) continue;
+      diagnostics_.warning(
+          {file_, 0},
+          fmt::format(
+              "{} poses of '{}' have rotation vectors of more than half a turn, up to {:.0f} "
+              "deg: are these three angles about axes (form: fixed_xyz, euler_zyx, ...)?",
+              rows.first, name, rows.second * 180.0 / std::numbers::pi));
+    }
     if (bad_cells_ <= kReported) return;
     const std::size_t more = bad_cells_ - kReported;
     diagnostics_.error({file_, 0}, fmt::format("{} more cell{} like these cannot be read", more,
@@ -103,25 +138,78 @@ class CsvSamples {
   static constexpr std::size_t kReported = 20;  ///< bad cells, one by one
   using Indices = std::vector<std::pair<std::size_t, const CsvColumn*>>;
 
+  /// Reports columns whose unit, in the row of units, is not that of the mapping.
+  /// @param key  of the mapping, to which the unit belongs
+  void check_units(std::span<const Indices::value_type> columns, const CsvUnit& unit,
+                   const char* key) {
+    for (const auto& [index, column] : columns) {
+      if (index >= units_.cells.size()) continue;
+      const std::string& cell = units_.cells[index];
+      const NamedUnit named = unit_of_cell(cell).value_or(NamedUnit::none);
+      const bool is_short = named == NamedUnit::millimetres, is_turn = named == NamedUnit::degrees;
+      std::string what;
+      if (named == NamedUnit::unreadable)
+        what = "convert it to metres, millimetres, radians or degrees";
+      if (is_short != unit.millimetres && (is_short || named == NamedUnit::metres)) {
+        what = fmt::format("write '{}: {}'", key, is_short ? "millimetres" : "metres");
+      }
+      if (is_turn != unit.degrees && (is_turn || named == NamedUnit::radians)) {
+        what = fmt::format("write '{}: {}'", key, is_turn ? "degrees" : "radians");
+      }
+      if (what.empty()) continue;
+      diagnostics_.error(
+          column->place,
+          fmt::format("column '{}' is in {}, by the row of units in {}; {}", column->name, cell,
+                      SourceLocation{file_, units_.line}.str(), what));
+      return;
+    }
+  }
+  void check_pose_units(const Indices& columns, const PoseForm& form) {
+    if (!form.has_size(columns.size())) return;  // an error elsewhere
+    if (form.rotation == RotationForm::matrix) {
+      for (const std::size_t i : {3U, 7U, 11U})
+        check_units({&columns[i], 1}, {false, form.millimetres}, "unit");
+      return;
+    }
+    const std::span all(columns);
+    check_units(all.first(3), {false, form.millimetres}, "unit");
+    if (form.has_angles()) check_units(all.subspan(3), {form.degrees, false}, "angles");
+  }
+
   /// Adds the measured pose of a floating joint.
   /// @returns  false, after a warning, if numbers of it are missing
   [[nodiscard]] bool add_pose(const CsvRow& row, const CsvPose& of, const Indices& columns,
                               Sample& sample) {
-    std::vector<double> numbers;
-    for (const auto& column : columns) numbers.push_back(value(row, {column}, {}));
-    const auto is_missing = [](double number) { return std::isnan(number); };
-    if (std::any_of(numbers.begin(), numbers.end(), is_missing)) {
+    const std::size_t before = bad_cells_;
+    const std::optional<Pose<double>> pose = pose_of(row, of.form, columns, of.joint);
+    if (!pose) {
       diagnostics_.warning({file_, row.line},
                            fmt::format("joint '{}' has no pose; the row is left out", of.joint));
       return false;
     }
-    const std::size_t before = bad_cells_;
-    const NumberedPose read = pose_from_numbers(of.form, numbers);
-    if (!read.wrong.empty()) {
-      bad_row(row, fmt::format("pose of '{}': {}", of.joint, read.wrong));
-    }
-    sample.poses[of.joint] = read.pose;
+    sample.poses[of.joint] = *pose;
     return bad_cells_ == before;
+  }
+
+  /// The pose in some columns; nullopt if a number is missing.  Reports what is wrong with it.
+  [[nodiscard]] std::optional<Pose<double>> pose_of(const CsvRow& row, const PoseForm& form,
+                                                    const Indices& columns,
+                                                    const std::string& name) {
+    std::vector<double> numbers;
+    for (const auto& column : columns) numbers.push_back(value(row, {column}, {}));
+    const auto is_missing = [](double number) { return std::isnan(number); };
+    if (std::any_of(numbers.begin(), numbers.end(), is_missing)) return std::nullopt;
+    const NumberedPose read = pose_from_numbers(form, numbers);
+    if (!read.wrong.empty()) bad_row(row, fmt::format("pose of '{}': {}", name, read.wrong));
+    constexpr double kHalfTurn = 1.05 * std::numbers::pi;
+    if (form.rotation == RotationForm::rotation_vector) {
+      const double angle = Vector3<double>::Map(numbers.data() + 3).norm() *
+                           (form.degrees ? std::numbers::pi / 180.0 : 1.0);
+      if (angle > kHalfTurn)
+        over_half_turn_[name] = {over_half_turn_[name].first + 1,
+                                 std::max(angle, over_half_turn_[name].second)};
+    }
+    return read.pose;
   }
 
   /// A missing velocity is an error: NaN would silently reach the models that use it.
@@ -142,9 +230,9 @@ class CsvSamples {
   }
 
   /// Adds the features of one entry to the observation of its sensor.
-  /// @param next  index in points_ of its first number; advanced past its last one
+  /// @param next, next_pose  indices in points_ and object_poses_ of its first one; advanced past its last one
   void add_features(const CsvRow& row, const CsvObservation& observation, const Indices& column,
-                    const Indices& ids, std::size_t& next, Sample& sample) {
+                    const Indices& ids, std::size_t& next, std::size_t& next_pose, Sample& sample) {
     const std::string frame = column.empty() ? observation.frame : text(row, column.front());
     auto seen = std::find_if(sample.observations.begin(), sample.observations.end(),
                              [&](const Observation& o) { return o.sensor == observation.sensor; });
@@ -160,6 +248,18 @@ class CsvSamples {
         doubt(row, "sensor '" + observation.sensor + "'", p.cwiseAbs().maxCoeff(), 100.0, "metres");
       }
       seen->features.push_back({frame, p});
+    }
+    for (const Pose<double>& pose : observation.constant_poses) {
+      seen->features.push_back({frame, pose.translation, pose.rotation});
+    }
+    for (std::size_t i = 0; i < observation.poses.size(); ++i) {
+      const auto pose =
+          pose_of(row, observation.form, object_poses_[next_pose++], observation.sensor);
+      const Vector3<double> not_seen =
+          Vector3<double>::Constant(std::numeric_limits<double>::quiet_NaN());
+      seen->features.push_back(
+          {frame, pose ? pose->translation : not_seen,
+           pose ? pose->rotation : Matrix3<double>(Matrix3<double>::Identity())});
     }
     add_ids(row, observation.ids, ids, before, seen->features);
   }
@@ -231,7 +331,11 @@ class CsvSamples {
         const bool comma = cell.find(',') != std::string::npos;
         bad_cell(row, *column,
                  fmt::format("is '{}', which is not a {}number{}", cell, number ? "finite " : "",
-                             comma ? "; write a decimal point, not a comma" : ""));
+                             !comma ? ""
+                             : mapping_.separator == ','
+                                 ? "; write a decimal point, not a comma"
+                                 : "; its comma may separate thousands, or other numbers "
+                                   "of the column have a point: write decimal points"));
         continue;
       }
       // Moving the decimal point of a single length avoids a second rounding.
@@ -247,11 +351,15 @@ class CsvSamples {
   const CsvMapping& mapping_;
   std::vector<const CsvObservation*> observations_;  ///< those in this table
   CsvColumns columns_;
+  const CsvRow& units_;
   std::string file_;
   Diagnostics& diagnostics_;
   /// In the order of the mapping.
-  std::vector<Indices> joints_, poses_, velocities_, conditions_, frames_, ids_, points_;
+  std::vector<Indices> joints_, poses_, velocities_, conditions_, frames_, ids_, points_,
+      object_poses_;
   std::size_t bad_cells_ = 0;
+  std::map<std::string, std::pair<int, double>>
+      over_half_turn_;             ///< rows of poses, and the largest angle, radians
   std::set<std::string> doubted_;  ///< joints and sensors with a warning
 };
 
@@ -282,26 +390,20 @@ struct CsvRead {
                                     const CsvSum& column, const std::string& file,
                                     Diagnostics& diagnostics) {
   CsvRead read;
-  std::vector<CsvRow> rows = csv_rows(text, mapping.separator, file, diagnostics);
-  if (rows.size() < (mapping.header ? 2u : 1u)) {
+  const CsvTable table =
+      csv_table(text, mapping.separator, mapping.header ? CsvHeader::present : CsvHeader::absent,
+                file, diagnostics);
+  if (table.rows.empty()) {
     diagnostics.error({file, 0}, "the table has no rows");
     return read;
   }
-  std::size_t columns = 0;
-  for (const CsvRow& row : rows) columns = std::max(columns, row.cells.size());
-  std::vector<std::string> header;
-  if (mapping.header) {
-    doubt_csv_header(rows.front(), file, diagnostics);
-    header = rows.front().cells;
-    columns = header.size();
-    rows.erase(rows.begin());
-  }
+  if (mapping.header) doubt_csv_header(table.header, file, diagnostics);
   const std::size_t before = diagnostics.errors.size();
-  CsvColumns found(header, columns, diagnostics);
+  CsvColumns found(table, diagnostics);
   const auto key = column.empty() ? std::nullopt : found.find(column.front());
-  CsvSamples reader(mapping, std::move(found), file, diagnostics);
+  CsvSamples reader(mapping, std::move(found), table.units, file, diagnostics);
   if (diagnostics.errors.size() != before) return read;  // they would repeat in every row
-  for (const CsvRow& row : rows) {
+  for (const CsvRow& row : table.rows) {
     auto sample = reader.sample(row);
     if (!sample) continue;
     read.samples.push_back(std::move(*sample));
@@ -387,11 +489,43 @@ std::vector<Sample> read_csv_samples(const std::string& csv, const std::string& 
                                      Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
   const CsvMapping columns = read_csv_mapping(mapping, diagnostics);
-  const std::string text = detail::read_text_file(csv);
+  const std::string text = read_pose_table(csv);
   if (diagnostics.errors.size() != before) return {};
   std::vector<Sample> samples = csv_samples(text, columns, csv, diagnostics);
   set_joint_moves(samples);
   return samples;
+}
+
+bool is_csv_table(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::error_code unknown;
+  if ((ending != ".csv" && ending != ".tsv" && ending != ".txt" && ending != ".dat") ||
+      !std::filesystem::is_regular_file(path, unknown)) {
+    return false;
+  }
+  std::string begin(4096, '\0');
+  std::ifstream file(path);
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin.find("joint_states:") == std::string::npos &&
+         begin.find("observations:") == std::string::npos;
+}
+
+std::vector<Sample> read_csv_by_columns_beside(const std::string& csv, Diagnostics& diagnostics) {
+  const std::filesystem::path columns = std::filesystem::path(csv).parent_path() / "columns.yaml";
+  if (std::filesystem::exists(columns)) {
+    diagnostics.note({csv, 0}, "is a table, read by " + columns.string());
+    return read_csv_samples(csv, columns.string(), diagnostics);
+  }
+  throw InputError(fmt::format(
+      "{}: is a table, not samples, and has no columns.yaml beside it, which says what its columns "
+      "mean; propose one: {}; then "
+      "convert the table: {}",
+      csv,
+      ShellCommand({"kinecal", "init", "--urdf", "robot.urdf"}).add_option("--from", {csv}).str(),
+      ShellCommand{"kinecal", "convert", shell_file(csv), "samples.yaml", "--columns",
+                   "columns.yaml"}
+          .str()));
 }
 
 }  // namespace kinecal

@@ -30,4 +30,12 @@ namespace kinecal {
                                                    const std::string& mapping,
                                                    Diagnostics& diagnostics);
 
+/// True for a file that is a table rather than samples in YAML, by its ending and its text.
+[[nodiscard]] bool is_csv_table(const std::string& path);
+
+/// Reads samples from a table by the columns.yaml beside it, and notes that.
+/// @throws InputError  if there is none, with the commands that propose one and convert the table
+[[nodiscard]] std::vector<Sample> read_csv_by_columns_beside(const std::string& csv,
+                                                             Diagnostics& diagnostics);
+
 }  // namespace kinecal

@@ -37,18 +37,6 @@ struct HandEyePair {
   Pose<double> base_T_flange, camera_T_object;
 };
 
-[[nodiscard]] Sample hand_eye_sample(const HandEyePair& pair, const SourceLocation& place) {
-  using Names = HandEyeNames;
-  Sample sample;
-  sample.source = place.str();
-  sample.poses[Names::kFlangeJoint] = pair.base_T_flange;
-  const Pose<double>& seen = pair.camera_T_object;
-  sample.observations = {
-      {Names::kObject, {{Names::kTarget, Vector3<double>::Zero(), Matrix3<double>::Identity()}}},
-      {Names::kCamera, {{Names::kCamera, seen.translation, seen.rotation}}}};
-  return sample;
-}
-
 /// A finite number; an error and zero for anything else.
 [[nodiscard]] double finite_pose_number(const ConfigEntry& entry, const std::string& name,
                                         const ConfigMap& map) {
@@ -156,6 +144,16 @@ struct HandEyePair {
 }  // namespace
 }  // namespace detail
 
+Sample hand_eye_sample(const Pose<double>& base_T_flange, const Pose<double>& camera_T_object) {
+  using Names = HandEyeNames;
+  Sample sample;
+  sample.poses[Names::kFlangeJoint] = base_T_flange;
+  sample.observations = {
+      {Names::kObject, {{Names::kTarget, Vector3<double>::Zero(), Matrix3<double>::Identity()}}},
+      {Names::kCamera, {{Names::kCamera, camera_T_object.translation, camera_T_object.rotation}}}};
+  return sample;
+}
+
 bool is_hand_eye_samples(const std::string& path) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) return false;
@@ -210,7 +208,8 @@ std::vector<Sample> read_hand_eye_samples(const std::string& path,
       pair.base_T_flange = pose_of_transform(map, "robot", inverse);
       pair.camera_T_object = pose_of_transform(map, "tracking", false);
     }
-    samples.push_back(hand_eye_sample(pair, place));
+    samples.push_back(hand_eye_sample(pair.base_T_flange, pair.camera_T_object));
+    samples.back().source = place.str();
   }
   return samples;
 }

@@ -21,11 +21,15 @@
 
 namespace kinecal {
 
+/// A sample of both poses, with the names of HandEyeNames: the pose of the flange's floating joint, that of the
+/// object as an observation of the camera, and the identity as one of what holds the object.
+[[nodiscard]] Sample hand_eye_sample(const Pose<double>& base_T_flange,
+                                     const Pose<double>& camera_T_object);
+
 /// True if a file begins like one of these; false for streams, which can be read only once.
 [[nodiscard]] bool is_hand_eye_samples(const std::string& path);
 
-/// The samples, with the names of HandEyeNames: the pose of the flange's floating joint, that of the
-/// object as an observation of the camera, and the identity as one of what holds the object.
+/// The samples, each a hand_eye_sample().
 /// @param camera_on_hand  decides what `robot` of easy_handeye2 is, where the file does not say it;
 ///                        nullopt: unknown
 /// @param diagnostics     receives every error, "file:line: ...", also if the file is not YAML

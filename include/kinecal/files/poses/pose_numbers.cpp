@@ -121,6 +121,13 @@ void read_rotation(const PoseForm& form, std::span<const double> numbers, Number
   const Vector3<double> angles = form.degrees ? given * (std::numbers::pi / 180.0) : given;
   const bool is_vector = form.rotation == RotationForm::rotation_vector;
   read.wrong = wrong_angles(form, is_vector ? given.norm() : given.cwiseAbs().maxCoeff());
+  constexpr double kTurn = 360.5;  // degrees
+  if (is_vector && form.degrees && given.norm() > kTurn) {
+    read.wrong = fmt::format(
+        "a rotation vector of {:.4g} degrees is more than a turn; if these are angles about axes, "
+        "write their form: fixed_xyz, euler_zyx ...",
+        given.norm());
+  }
   read.pose.rotation = is_vector ? exp(angles) : rotation_of(form, angles);
 }
 
@@ -140,43 +147,67 @@ std::string PoseForm::columns_text() const {
   return fmt::format("6 columns: x y z, then the angles about {} {} {}", axes[0], axes[1], axes[2]);
 }
 
+namespace detail {
+namespace {
+
+/// A name that stands for a form and its units.
+struct NamedForm {
+  std::string_view name, form;
+  bool millimetres = false, degrees = false;
+};
+
+constexpr NamedForm kNamedForms[] = {{"rpy", "fixed_xyz"},
+                                     {"ur", "rotation_vector"},
+                                     {"abb", "quaternion_wxyz", true},
+                                     {"kuka", "euler_zyx", true, true},
+                                     {"fanuc", "fixed_xyz", true, true},
+                                     {"yaskawa", "fixed_xyz", true, true},
+                                     {"fairino", "fixed_xyz", true, true},
+                                     {"techman", "fixed_xyz", true, true},
+                                     {"dobot", "fixed_xyz", true, true},
+                                     {"elite", "fixed_xyz", true, true},
+                                     {"jaka", "fixed_xyz", true},
+                                     {"aubo", "fixed_xyz"},
+                                     {"kinova", "fixed_xyz", false, true},
+                                     {"nachi", "euler_zyx", true, true},
+                                     {"staubli", "euler_xyz", true, true},
+                                     {"doosan", "euler_zyz", true, true},
+                                     {"kawasaki", "euler_zyz", true, true}};
+
+}  // namespace
+}  // namespace detail
+
 std::optional<PoseForm> pose_form(std::string_view name) {
+  for (const detail::NamedForm& named : detail::kNamedForms) {
+    if (named.name != name) continue;
+    std::optional<PoseForm> form = pose_form(named.form);
+    form->millimetres = named.millimetres;
+    form->degrees = named.degrees;
+    return form;
+  }
   PoseForm form;
-  if (name == "quaternion_xyzw") return form;
-  if (name == "quaternion_wxyz" || name == "abb") {
+  const bool is_euler = name.starts_with("euler_"), is_fixed = name.starts_with("fixed_");
+  if (is_euler || is_fixed) {
+    form.axes = std::string(name.substr(6));
+    if (!detail::are_axes(form.axes)) return std::nullopt;
+    form.rotation = is_euler ? RotationForm::euler : RotationForm::fixed_axes;
+  } else if (name == "quaternion_wxyz") {
     form.rotation = RotationForm::quaternion_wxyz;
-    form.millimetres = name == "abb";
-  } else if (name == "rotation_vector" || name == "ur") {
+  } else if (name == "rotation_vector") {
     form.rotation = RotationForm::rotation_vector;
   } else if (name == "matrix") {
     form.rotation = RotationForm::matrix;
-  } else if (name == "kuka" || (name.starts_with("euler_") && detail::are_axes(name.substr(6)))) {
-    form.rotation = RotationForm::euler;
-    form.axes = name == "kuka" ? "zyx" : std::string(name.substr(6));
-    form.millimetres = form.degrees = name == "kuka";
-  } else if (name == "fanuc" || name == "rpy" ||
-             (name.starts_with("fixed_") && detail::are_axes(name.substr(6)))) {
-    form.rotation = RotationForm::fixed_axes;
-    form.axes = name.starts_with("fixed_") ? std::string(name.substr(6)) : "xyz";
-    form.millimetres = form.degrees = name == "fanuc";
-  } else {
+  } else if (name != "quaternion_xyzw") {
     return std::nullopt;
   }
   return form;
 }
 
 std::vector<std::string> pose_form_names() {
-  return {"quaternion_xyzw",
-          "quaternion_wxyz",
-          "rotation_vector",
-          "matrix",
-          "rpy",
-          "fixed_xyz",
-          "euler_zyx",
-          "ur",
-          "abb",
-          "kuka",
-          "fanuc"};
+  std::vector<std::string> names = {"quaternion_xyzw", "quaternion_wxyz", "rotation_vector",
+                                    "matrix",          "fixed_xyz",       "euler_zyx"};
+  for (const detail::NamedForm& named : detail::kNamedForms) names.emplace_back(named.name);
+  return names;
 }
 
 NumberedPose pose_from_numbers(const PoseForm& form, std::span<const double> numbers) {

@@ -9,7 +9,14 @@
 //   ur                 rotation_vector              metres, radians
 //   abb                quaternion_wxyz              millimetres
 //   kuka               euler_zyx (A B C)            millimetres, degrees
-//   fanuc              fixed_xyz (W P R)            millimetres, degrees
+//   fanuc, yaskawa, fairino, techman, dobot, elite
+//                      fixed_xyz                    millimetres, degrees
+//   jaka               fixed_xyz                    millimetres, radians
+//   aubo               fixed_xyz                    metres, radians
+//   kinova             fixed_xyz                    metres, degrees
+//   nachi              euler_zyx (R P Y)            millimetres, degrees
+//   staubli            euler_xyz (RX RY RZ)         millimetres, degrees
+//   doosan, kawasaki   euler_zyz (A B C, O A T)     millimetres, degrees
 //
 // `rpy` is fixed_xyz: roll, pitch, yaw of a URDF.
 // SPDX-License-Identifier: Apache-2.0

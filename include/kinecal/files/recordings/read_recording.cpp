@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "kinecal/files/csv/read_csv_samples.hpp"
 #include "kinecal/files/poses/hand_eye_samples.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/message_decoder.ipp"
@@ -25,6 +26,7 @@ Recording read_recording(const std::string& path, Diagnostics& diagnostics, unsi
 Recording read_as_recorded(const std::string& path, Diagnostics& diagnostics, unsigned threads,
                            const ProgressMeter& meter) {
   if (is_hand_eye_samples(path)) return {read_hand_eye_samples(path, {}, diagnostics), {}};
+  if (is_csv_table(path)) return {read_csv_by_columns_beside(path, diagnostics), {}};
   if (recording_format(path) == RecordingFormat::yaml) {
     return {read_samples(path, diagnostics, threads, meter), {}};
   }

@@ -20,7 +20,7 @@ struct Recording {
 };
 
 /// Reads YAML, samples of MoveIt Calibration or easy_handeye2, a ROS 1 bag, MCAP or a ROS 2 bag,
-/// identified by content.  Sets Sample::joint_moves and,
+/// identified by content, or a table with a columns.yaml beside it.  Sets Sample::joint_moves and,
 /// where no velocity was recorded, Sample::joint_velocities: samples/joint_moves.hpp.
 /// @param diagnostics  receives every error, also if there are no samples
 /// @param threads      like read_samples()

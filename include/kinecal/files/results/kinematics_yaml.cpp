@@ -6,13 +6,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "kinecal/files/yaml/config_map.hpp"
 #include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
+#include "kinecal/geometry/rotation.hpp"
 #include "kinecal/geometry/rpy.hpp"
 
 namespace kinecal {
@@ -83,6 +87,21 @@ using KinematicsEntries = std::vector<std::pair<std::string, std::string>>;
   });
 }
 
+/// The origin of an entry.
+/// @throws InputError  if a number is missing
+[[nodiscard]] Pose<double> origin_of(const YamlNode& entry, const std::string& name,
+                                     const std::string& file) {
+  const auto number = [&](const char* key) {
+    const YamlNode* node = entry.find(key);
+    const std::optional<double> value = node != nullptr ? config_number(*node) : std::nullopt;
+    if (value && std::isfinite(*value)) return *value;
+    throw InputError(fmt::format("{}: '{}' has no number {}",
+                                 SourceLocation{file, entry.line}.str(), name, key));
+  };
+  return {rotation_from_rpy(Vector3<double>(number("roll"), number("pitch"), number("yaw"))),
+          {number("x"), number("y"), number("z")}};
+}
+
 [[nodiscard]] std::string origin_yaml(const std::string& name, const Pose<double>& origin) {
   const Vector3<double>& xyz = origin.translation;
   const Vector3<double> rpy = rpy_from_rotation(origin.rotation);
@@ -95,6 +114,33 @@ using KinematicsEntries = std::vector<std::pair<std::string, std::string>>;
 
 }  // namespace
 }  // namespace detail
+
+std::string kinematics_difference(const Robot& robot, const std::string& existing,
+                                  const std::string& file) {
+  constexpr double kMetres = 1e-5, kRadians = 1e-5;  // the digits of a file
+  const detail::YamlNode kinematics = detail::existing_kinematics(existing, file);
+  std::string unused, differences;
+  detail::KinematicsEntries entries = detail::ur_entries(robot, unused);
+  if (entries.empty() || !detail::is_of_ur(kinematics)) {
+    entries.clear();
+    for (const Joint& joint : robot.joints()) entries.emplace_back(joint.name, joint.name);
+  }
+  for (const auto& [entry, joint] : entries) {
+    const detail::YamlNode* of = kinematics.find(entry);
+    if (of == nullptr || !of->is_map()) continue;
+    const Pose<double> difference =
+        detail::origin_of(*of, entry, file).inverse() * robot.joint(joint).origin;
+    const double shift = difference.translation.norm(), turn = log(difference.rotation).norm();
+    std::string by;
+    if (shift > kMetres) by = fmt::format("{:.2g} mm", 1e3 * shift);
+    if (turn > kRadians) {
+      by += fmt::format("{}{:.2g} deg", by.empty() ? "" : " and ", turn * 180.0 / std::numbers::pi);
+    }
+    if (by.empty()) continue;
+    differences += fmt::format("{}{} by {}", differences.empty() ? "" : ", ", entry, by);
+  }
+  return differences;
+}
 
 std::string kinematics_yaml(const Robot& robot, const std::vector<JointPatch>& patches,
                             const std::string& existing, const std::string& file) {
@@ -110,10 +156,7 @@ std::string kinematics_yaml(const Robot& robot, const std::vector<JointPatch>& p
     for (const Joint& joint : robot.joints()) entries.emplace_back(joint.name, joint.name);
   }
   const std::map<std::string, Pose<double>> origins = calibrated_origins(robot, patches);
-  std::string text =
-      "# Origins of joints in their parent links, metres and radians; zeros of joints are in "
-      "them.\n"
-      "kinematics:\n";
+  std::string text = fmt::format("{}\nkinematics:\n", kKinematicsMark);
   for (const auto& [entry, joint] : entries) text += detail::origin_yaml(entry, origins.at(joint));
   if (!is_ur) return text;
   const detail::YamlNode* hash = before ? before->find("hash") : nullptr;

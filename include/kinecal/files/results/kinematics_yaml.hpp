@@ -17,6 +17,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinecal/files/diagnostics.hpp"
@@ -24,6 +25,16 @@
 #include "kinecal/kinematics/robot.hpp"
 
 namespace kinecal {
+
+/// The first line of what kinematics_yaml() writes: such a file is not a factory's.
+inline constexpr std::string_view kKinematicsMark =
+    "# Origins of joints in their parent links, metres and radians; zeros of joints are in them.";
+
+/// How a robot differs from such a file: "wrist_1 by 0.3 mm and 0.05 deg, ..."; empty if it does not, so that the URDF was
+/// made with the file.
+/// @throws InputError  if it is not such a file
+[[nodiscard]] std::string kinematics_difference(const Robot& robot, const std::string& existing,
+                                                const std::string& file);
 
 /// The content of such a file, with UR's names if the file is UR's already or the robot has UR's six joints,
 /// which rotate about z.

@@ -19,11 +19,13 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/urdf_text.ipp"
+#include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/text/characters.hpp"
@@ -256,6 +258,37 @@ void check_urdf_joints(const UrdfText& source) {
   return joint;
 }
 
+/// The first scalar with a robot; nullptr if there is none.
+[[nodiscard]] const YamlNode* robot_scalar(const YamlNode& node) {
+  if (node.is_scalar()) return node.text.find("<robot") != std::string::npos ? &node : nullptr;
+  for (const YamlNode& item : node.items) {
+    if (const YamlNode* found = robot_scalar(item)) return found;
+  }
+  return nullptr;
+}
+
+/// The URDF in what ROS programs print: a value in YAML (`ros2 param dump`, `ros2 topic echo`), or after some words
+/// ("String value is: <?xml ..." of `ros2 param get`).  Any other text is returned as it is.
+[[nodiscard]] std::string unwrapped_urdf(std::string text) {
+  const std::size_t robot = text.find("<robot"), xml = text.find("<?xml"),
+                    begin = std::min(robot, xml);
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  if (robot == std::string::npos || first == std::string::npos || text[first] == '<') return text;
+  const std::string_view before = std::string_view(text).substr(first, begin - first);
+  if (before.find(':') != std::string_view::npos && !before.starts_with("String value is")) {
+    try {
+      Diagnostics other_documents;
+      const YamlNode yaml = parse_config_text(text, "", other_documents);
+      if (const YamlNode* node = robot_scalar(yaml)) return node->text;
+    } catch (const InputError&) {  // not YAML: words before the URDF
+    }
+  }
+  constexpr std::string_view kEnd = "</robot>";
+  const std::size_t end = text.rfind(kEnd);
+  if (end == std::string::npos || end < begin) return text;
+  return text.substr(begin, end + kEnd.size() - begin) + "\n";
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -274,7 +307,7 @@ Robot parse_urdf(const std::string& text, const std::string& name_for_messages) 
 }
 
 std::string read_urdf_text(const std::string& path) {
-  return detail::read_text_file(path);
+  return detail::unwrapped_urdf(detail::read_text_file(path));
 }
 
 Robot read_urdf(const std::string& path) {

@@ -15,7 +15,8 @@ namespace kinecal {
 /// @throws InputError  "file:line: message" if the text is not a URDF or its joints are not a tree
 [[nodiscard]] Robot parse_urdf(const std::string& text, const std::string& name_for_messages);
 
-/// The text of a URDF, byte for byte.
+/// The text of a URDF, byte for byte; of a URDF in a value of YAML or behind other words, as `ros2 param get` and `ros2 topic
+/// echo` print it, only that.
 /// @throws InputError  if it cannot be read
 [[nodiscard]] std::string read_urdf_text(const std::string& path);
 

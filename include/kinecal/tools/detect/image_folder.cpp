@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "kinecal/files/csv/csv_table.hpp"
+#include "kinecal/files/csv/csv_units.hpp"
 #include "kinecal/files/csv/read_csv_samples.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/images/read_image.hpp"
@@ -41,20 +42,19 @@ void complete_names(const std::vector<std::string>& images, std::vector<CsvRow>&
 /// @param image  column of their names; nullopt: the order of their names
 /// @return       by the source of each row
 [[nodiscard]] std::map<std::string, std::string> images_of_rows(
-    const std::vector<CsvRow>& rows, bool header, std::optional<std::size_t> image,
-    const ImageFolder& folder, const std::vector<std::string>& names, Diagnostics& diagnostics) {
+    const std::vector<CsvRow>& rows, std::optional<std::size_t> image, const ImageFolder& folder,
+    const std::vector<std::string>& names, Diagnostics& diagnostics) {
   std::map<std::string, std::string> result;
   std::set<std::string> used;
-  const std::size_t first = header ? 1 : 0;
-  for (std::size_t i = first; i < rows.size(); ++i) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     const SourceLocation place{folder.table, rows[i].line};
     std::string name;
     if (image && *image < rows[i].cells.size()) name = rows[i].cells[*image];
-    if (!image && i - first < names.size()) name = names[i - first];
+    if (!image && i < names.size()) name = names[i];
     const std::string file = std::filesystem::path(name).filename().string();
     if (!image && name.empty()) {
       diagnostics.error(place, "there is no image for this row: the table has " +
-                                   std::to_string(rows.size() - first) + " rows, " + folder.images +
+                                   std::to_string(rows.size()) + " rows, " + folder.images +
                                    " has " + std::to_string(names.size()) + " images");
     } else if (!std::binary_search(names.begin(), names.end(), file, file_naturally_before)) {
       diagnostics.error(place, "image '" + printable(name) + "' is not in " + folder.images +
@@ -100,38 +100,33 @@ void complete_names(const std::vector<std::string>& images, std::vector<CsvRow>&
   return names;
 }
 
-/// The separator of a table: the first of these in its header.
-[[nodiscard]] char separator_of(std::string_view text) {
-  const std::string_view header = text.substr(0, text.find_first_of("\r\n"));
-  for (const char separator : {',', ';', '\t'}) {
-    if (header.find(separator) != std::string_view::npos) return separator;
-  }
-  return ' ';
-}
-
 /// The column with the names of images: by its name, or because its first cell names an image;
 /// nullopt if the table has none.
-[[nodiscard]] std::optional<std::size_t> image_column(const std::vector<CsvRow>& rows) {
-  for (std::size_t i = 0; !rows.empty() && i < rows.front().cells.size(); ++i) {
-    const std::string name = in_small_letters(rows.front().cells[i]);
+[[nodiscard]] std::optional<std::size_t> image_column(const CsvTable& table) {
+  for (std::size_t i = 0; i < table.header.cells.size(); ++i) {
+    const std::string name = in_small_letters(table.header.cells[i]);
     if (name == "image" || name == "file" || name == "filename") return i;
   }
-  for (std::size_t i = 0; rows.size() > 1 && i < rows[1].cells.size(); ++i) {
-    if (is_image_name(rows[1].cells[i])) return i;
+  for (std::size_t i = 0; !table.rows.empty() && i < table.rows.front().cells.size(); ++i) {
+    if (is_image_name(table.rows.front().cells[i])) return i;
   }
   return std::nullopt;
 }
 
-/// Every column except that of the images is a joint.
-[[nodiscard]] CsvMapping joints_of_header(const std::vector<CsvRow>& rows, char separator,
+/// Every column except that of the images is a joint, in the unit of a row of units.
+[[nodiscard]] CsvMapping joints_of_header(const CsvTable& read, char separator,
                                           std::optional<std::size_t> image,
                                           const std::string& table) {
   CsvMapping mapping;
   mapping.separator = separator;
-  for (std::size_t i = 0; !rows.empty() && i < rows.front().cells.size(); ++i) {
+  for (std::size_t i = 0; i < read.header.cells.size(); ++i) {
     if (i == image) continue;
-    const std::string& name = rows.front().cells[i];
-    mapping.joints.push_back({name, {{name, {table, rows.front().line}}}, {}});
+    const std::string& name = read.header.cells[i];
+    const auto unit =
+        i < read.units.cells.size() ? unit_of_cell(read.units.cells[i]) : std::nullopt;
+    mapping.joints.push_back({name,
+                              {{name, {table, read.header.line}}},
+                              {unit == NamedUnit::degrees, unit == NamedUnit::millimetres}});
   }
   return mapping;
 }
@@ -182,19 +177,21 @@ std::vector<PosedImage> list_images(const ImageFolder& folder, Diagnostics& diag
                      "numbers are; 'kinecal init --poses' writes it");
   }
   if (of_files) mapping.separator = ',', mapping.header = true;
-  const char separator = folder.columns.empty() ? detail::separator_of(text) : mapping.separator;
-  Diagnostics repeated;  // csv_samples() reports them again
-  auto rows = detail::csv_rows(text, separator, folder.table, repeated);
+  const char separator = folder.columns.empty() ? detail::csv_separator(text) : mapping.separator;
   const bool header = folder.columns.empty() || mapping.header;
-  const auto image = header ? detail::image_column(rows) : std::nullopt;
+  Diagnostics repeated;  // csv_samples() reports them again
+  detail::CsvTable table = detail::csv_table(
+      text, separator, header ? detail::CsvHeader::present : detail::CsvHeader::absent,
+      folder.table, repeated);
+  const auto image = header ? detail::image_column(table) : std::nullopt;
   if (folder.columns.empty()) {
-    mapping = detail::joints_of_header(rows, separator, image, folder.table);
+    mapping = detail::joints_of_header(table, separator, image, folder.table);
   }
   if (!diagnostics.errors.empty()) return {};
   const std::vector<Sample> samples = csv_samples(text, mapping, folder.table, diagnostics);
-  if (rows.size() < (header ? 2U : 1U)) return {};  // an error: no image has a row
-  if (of_files) detail::complete_names(names, rows);
-  const auto images = detail::images_of_rows(rows, header, image, folder, names, diagnostics);
+  if (table.rows.empty()) return {};  // an error: no image has a row
+  if (of_files) detail::complete_names(names, table.rows);
+  const auto images = detail::images_of_rows(table.rows, image, folder, names, diagnostics);
   std::vector<PosedImage> result;
   for (const Sample& sample : samples) {
     const auto found = images.find(sample.source);

@@ -77,11 +77,15 @@ HandEyeFit fit_hand_eye(std::span<const Sample> samples, bool camera_on_hand) {
     gradient += matrix.transpose() * right(pair);
   }
   fit.mount.translation = information.ldlt().solve(gradient);
-  double squares = 0.0;
+  double squares = 0.0, turns = 0.0;
   for (const detail::MotionPair& pair : pairs) {
+    const Matrix3<double> by_flange = pair.of_flange.rotation * fit.mount.rotation,
+                          by_object = fit.mount.rotation * pair.of_object.rotation;
+    turns += log(Matrix3<double>(by_flange.transpose() * by_object)).squaredNorm();
     squares += (left(pair.of_flange) * fit.mount.translation - right(pair)).squaredNorm();
   }
   fit.difference = std::sqrt(squares / static_cast<double>(pairs.size()));
+  fit.turn = std::sqrt(turns / static_cast<double>(pairs.size()));
   return fit;
 }
 

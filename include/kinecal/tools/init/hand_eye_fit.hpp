@@ -21,6 +21,7 @@ namespace kinecal {
 struct HandEyeFit {
   Pose<double> mount;       ///< flange_T_camera or base_T_camera, metres
   double difference = 0.0;  ///< root mean square of the equation for the translation, metres
+  double turn = 0.0;        ///< the same for the rotation, radians
 };
 
 /// The fit of all pairs of samples.

@@ -229,8 +229,8 @@ void check_whole_arm(const Robot& robot, const ColumnOfJoint& found, const std::
     throw InputError(
         fmt::format("{}: no column has the name of a joint ({}), nor are there q1, q2, ... of an "
                     "arm; say in columns.yaml "
-                    "what its columns mean: MANUAL, Samples from a table",
-                    file, driven));
+                    "what its columns mean: MANUAL, Samples from a table; {}",
+                    file, driven, table.header_text));
   }
   return joints;
 }
@@ -271,13 +271,16 @@ struct PointColumns {
     if (triple == all.end()) triple = all.insert(all.end(), {rest});
     triple->xyz[which] = c;
   }
+  const auto is_force = [](const PointColumns& triple) { return triple.rest == "f"; };
+  const bool has_forces = std::any_of(all.begin(), all.end(), is_force);
   std::erase_if(all, [&](const PointColumns& triple) {
     const bool whole =
         std::all_of(triple.xyz.begin(), triple.xyz.end(), [](int c) { return c >= 0; });
     const std::vector<std::string> words = words_of(triple.rest);
+    if (triple.rest == "t" && has_forces) return true;  // torques; else the translations of Vicon
     return !whole || std::any_of(words.begin(), words.end(), [](const std::string& word) {
-      return std::set<std::string>{"r", "rot", "q", "w",        "quat",  "orientation", "n",
-                                   "v", "f",   "t", "velocity", "force", "torque",      "accel"}
+      return std::set<std::string>{"r", "rot", "q",        "w",     "quat",   "orientation", "n",
+                                   "v", "f",   "velocity", "force", "torque", "accel"}
           .contains(word);
     });
   });
@@ -309,7 +312,8 @@ struct PointColumns {
     throw InputError(
         file +
         ": no three columns are called x, y, z (of a tracker's point); say in columns.yaml "
-        "what its columns mean: MANUAL, Samples from a table");
+        "what its columns mean: MANUAL, Samples from a table; " +
+        table.header_text);
   }
   // Several: numbered points of one name.
   const auto name = [](const PointColumns& point) {
@@ -324,11 +328,11 @@ struct PointColumns {
     const auto of = [&](const PointColumns& p) {
       return table.columns[static_cast<std::size_t>(p.xyz[0])].name;
     };
-    throw InputError(
-        fmt::format("{}: both '{}' and '{}' may begin the point that was measured; say in "
-                    "columns.yaml which it "
-                    "is: MANUAL, Samples from a table",
-                    file, of(points.front()), of(point)));
+    throw InputError(fmt::format(
+        "{}: both '{}' and '{}' may begin the point that was measured; say in "
+        "columns.yaml which it "
+        "is, not what the controller computed from the joints: MANUAL, Samples from a table; {}",
+        file, of(points.front()), of(point), table.header_text));
   }
   if (points.size() == 1 && added.size() == 1) points.front().deviation = added.front().xyz;
   return points;
