@@ -28,6 +28,7 @@ int init_cameras(const InitOptions& options) {
   if (!target || !is_board(target->target)) {
     throw InputError("--target: cameras alone see a board: checkerboard, apriltag or charuco");
   }
+  note_fault_of_target(target->word);
   const std::filesystem::path folder = folder_of(options.output);
   const std::string capture = !options.capture.empty() ? options.capture
                               : folder == "."          ? "capture.yaml"
@@ -52,8 +53,8 @@ int init_cameras(const InitOptions& options) {
   answers.camera_type = "camera2d";
   answers.target_frame = answers.holder = "board";
   const std::string finder = initial_capture(robot, answers);
-  write_text_file(options.output, text);
-  write_text_file(capture, finder);
+  write_output(options.output, text);
+  write_output(capture, finder);
   say("wrote {} and {}\n  fill in what is zero in {}: its sizes decide the scale\n", options.output,
       capture, capture);
   const ShellCommand detect =
