@@ -7,6 +7,7 @@
 
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/results/standard_output.hpp"
+#include "kinecal/text/characters.hpp"
 #include "report.hpp"
 
 namespace kinecal::cli {
@@ -32,6 +33,9 @@ void write_output(const std::string& output, const std::string& content) {
 
 void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force) {
   if (is_standard_output(output)) return reserve_standard_output();
+  if (output.find('\n') != std::string::npos) {
+    throw OutputError("'" + detail::one_line(output) + "': the name of a file has a line end");
+  }
   const auto name = [](const std::string& path) {
     return std::filesystem::absolute(path).lexically_normal();
   };

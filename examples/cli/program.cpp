@@ -7,9 +7,9 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
-#include <iostream>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +22,7 @@
 #include "kinecal/text/printable.hpp"
 #include "kinecal/text/shell_command.hpp"
 #include "kinecal/tools/init/init_answers.hpp"
+#include "terminal.hpp"
 
 namespace {
 
@@ -1125,8 +1126,7 @@ void replace_help(const CLI::App& app, std::vector<std::string>& arguments) {
 
 /// The exit code, or an error if something that was printed did not arrive: on a full disk.
 int if_printed(int code) {
-  std::cout.flush();  // help, by CLI11
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return code;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   std::fprintf(stderr, "error: cannot write to the standard output\n");
   return kBadInput;
 }
@@ -1156,7 +1156,11 @@ int run(int argc, char** argv) {
     app.failure_message([&](const CLI::App*, const CLI::Error& error) {
       return kinecal::printable(commands.refusal(given, error));
     });
-    return if_printed(app.exit(e) == 0 ? kDone : kBadInput);
+    std::ostringstream out, err;
+    const bool is_help = app.exit(e, out, err) == 0;
+    say("{}", out.str());
+    say(stderr, "{}", err.str());
+    return if_printed(is_help ? kDone : kBadInput);
   }
   return if_printed(commands.run_called());
 }

@@ -218,7 +218,7 @@ TEST_F(Hostile, LineEndsInSamplesAndNamesOfFilesForgeNoLine) {
   const std::string forged = "x\nverdict: good", yaml = detail::name_to_yaml(forged);
   write_input("arm");
   const std::string samples = read("arm.yaml");
-  for (const std::string name : {"sensor_name: tracker", "frame_id: arm frame", "[arm, "}) {
+  for (const std::string name : {"sensor_name: tracker", "frame_id: \"arm frame\"", "[arm, "}) {
     const std::string key = name.substr(0, name.find(' ') + 1);
     write("arm.yaml", with(samples, name, name[0] == '[' ? "[" + yaml + ", " : key + yaml));
     ASSERT_NE(read("arm.yaml"), samples) << name;
@@ -244,6 +244,11 @@ TEST_F(Hostile, LineEndsInSamplesAndNamesOfFilesForgeNoLine) {
       "calibrate --urdf arm.urdf --config c.yaml --samples arm.yaml --output " + quoted(forged));
   EXPECT_EQ(folder.code, 1) << folder.out;
   EXPECT_THAT(folder.err, HasSubstr("'x verdict: good': the name of a folder has a line end"));
+  const test::Outcome report =
+      kinecal("calibrate --urdf arm.urdf --config c.yaml --samples arm.yaml --dry-run --report " +
+              quoted(forged));
+  EXPECT_EQ(report.code, 1) << report.out;
+  EXPECT_THAT(report.err, HasSubstr("'x verdict: good': the name of a file has a line end"));
 }
 
 }  // namespace
