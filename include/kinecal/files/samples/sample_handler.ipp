@@ -14,7 +14,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -213,8 +212,8 @@ class SampleBuilder {
     const auto where = [&] {
       return fmt::format("sample at line {}, sensor {}", line_, shown(name));
     };
-    if (sample_.observations.size() == 1) sensors_.clear();
-    if (!sensors_.insert(name).second) {
+    const auto same = [&](const Observation& o) { return o.sensor == name; };
+    if (std::any_of(sample_.observations.begin(), sample_.observations.end() - 1, same)) {
       errors_.add(line, where() + " occurs twice");
     }
     if (const std::string wrong = camera_.ids().apply(observation().features); !wrong.empty()) {
@@ -231,7 +230,6 @@ class SampleBuilder {
   int line_ = 0;            ///< where the sample begins
   std::size_t joints_ = 0;  ///< of the last sample: the next one probably has as many
   Sample sample_;
-  std::set<std::string> sensors_;                         ///< of its observations so far
   Eigen::Vector4d quaternion_ = Eigen::Vector4d::Zero();  ///< x y z w
   std::string key_;  ///< name of the last condition, or joint of the last pose
   SamplePose pose_;
