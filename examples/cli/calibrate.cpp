@@ -136,9 +136,10 @@ ResultFileOptions file_options(const ResultOptions& options, const Robot& robot)
   return files;
 }
 
-std::vector<OutputFile> with_copies(const ResultOptions& options, const InputTexts& texts,
-                                    std::vector<OutputFile> files) {
-  for (OutputFile& copy : copies(options, texts)) files.push_back(std::move(copy));
+std::vector<OutputFile> files_of(const ResultOptions& options, const InputTexts& texts,
+                                 const CalibratedRobot& calibrated) {
+  std::vector<OutputFile> files = calibrated_files(
+      calibrated, file_options(options, calibrated.setup.robot), copies(options, texts));
   check_targets(options, options.output, files);
   return files;
 }
@@ -270,10 +271,9 @@ int calibrate(const CalibrateOptions& options) {
   write_reports(options, texts, calibrated);
   if (!options.scene.empty()) write_scene_file(options.scene, calibrated, options.mesh_paths);
   const Robot& robot = calibrated.setup.robot;
-  const ResultFileOptions how = file_options(options, robot);
   std::vector<OutputFile> files;
   if (folder && calibrated.is_usable()) {
-    files = with_copies(options, texts, calibrated_files(calibrated, how));
+    files = files_of(options, texts, calibrated);
     const RobotFiles others =
         robot_files(options, robot, texts, findings.result.table, files.front().content);
     folder->write(files, options.force ? Existing::replaced : Existing::kept);

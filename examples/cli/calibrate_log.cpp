@@ -238,12 +238,12 @@ int report(const LogOptions& options, LogRun& run, CalibratedRobot& calibrated) 
     return kNotUsable;
   }
   const Robot& robot = calibrated.setup.robot;
-  std::vector<OutputFile> all = calibrated_files(calibrated, file_options(options, robot));
+  std::vector<OutputFile> all = files_of(options, run.texts(), calibrated);
   std::erase_if(all, [](const OutputFile& file) { return file.name == "residuals.csv"; });
   const RobotFiles others =
       robot_files(options, robot, run.texts(), findings.result.table, all.front().content);
   OutputFolder folder(options.output);
-  write(folder, with_copies(options, run.texts(), std::move(all)), options.force);
+  write(folder, all, options.force);
   write(others);
   run.forget_checkpoints();
   return kDone;

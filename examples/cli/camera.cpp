@@ -63,7 +63,7 @@ int camera(const CameraOptions& options) {
     return to_camera_info_yaml(camera, options.name);
   };
   try {
-    write_text_file(options.output, text());
+    write_output(options.output, text());
   } catch (const std::invalid_argument& e) {
     throw InputError(fmt::format("{}: {}; nothing was written", options.file, e.what()));
   }

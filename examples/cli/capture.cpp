@@ -235,7 +235,10 @@ void check_options(const CaptureOptions& options) {
   }
   check_output(options.output, inputs, options.force || options.resume);
   inputs.push_back(options.output);
-  if (!options.sheet.empty()) check_sheets(options.sheet, inputs, options.force);
+  if (!options.sheet.empty()) {
+    const bool is_own = options.resume && std::filesystem::exists(options.output);
+    check_sheets(options.sheet, inputs, options.force || is_own);
+  }
   if (!options.result.empty()) check_results(calibration_of(options));
   check_reports(calibration_of(options));
   if (!(options.velocity > 0.0)) throw InputError("--velocity must be a number from 0.01 to 1");
@@ -252,7 +255,8 @@ struct Session {
   std::vector<CapturePose> poses;
   std::vector<Sample> samples;  ///< those of an earlier session first
   std::optional<Follower> follower;
-  std::size_t done = 0;                    ///< poses
+  std::size_t earlier = 0;                 ///< poses of an earlier session
+  std::size_t done = 0;                    ///< poses of this one
   Stamp spent{};                           ///< on the robot's clock, for `timed` of these poses
   std::size_t timed = 0;                   ///< poses that were not skipped
   std::vector<Thumbnail> thumbnails = {};  ///< of what finders looked at
@@ -271,11 +275,12 @@ struct Session {
     spent += captured.duration;
     timed += captured.duration > Stamp::zero() ? 1 : 0;
     ++done;
-    print_pose(done, poses.size(), captured, time_left(), said);
+    print_pose(earlier + done, poses.empty() ? 0 : earlier + poses.size(), captured, time_left(),
+               said);
     add_thumbnails(captured);
     if (captured.samples.empty()) return;
     samples.insert(samples.end(), captured.samples.begin(), captured.samples.end());
-    write_recording(options.output, samples, urdf);
+    write_recording(options.output, samples, urdf, existing_at(options.output));
     for (const Sample& sample : captured.samples) {
       if (follower) follower->add(sample, poses_left(poses, samples));
     }
@@ -318,7 +323,7 @@ struct Session {
     for (const FinderOutcome& outcome : captured.outcomes) {
       if (outcome.view.image.empty()) continue;
       thumbnails.push_back(
-          thumbnail(outcome.view.image, outcome.found.marks, fmt::format("pose {}", done),
+          thumbnail(outcome.view.image, outcome.found.marks, fmt::format("pose {}", earlier + done),
                     outcome.found ? "" : outcome.found.refusal, outcome.found.grid));
     }
   }
@@ -385,6 +390,7 @@ int capture(const CaptureOptions& options) {
     const std::vector<CapturePose> all = read_poses(options.poses, config, session.robot);
     check_robot(session.samples, all);
     session.poses = poses_left(all, session.samples);
+    session.earlier = all.size() - session.poses.size();
     is_complete = session.poses.empty();
   }
   if (!options.calibrate.empty()) {

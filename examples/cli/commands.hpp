@@ -340,4 +340,14 @@ int rpy(const RpyOptions& options);
 /// Name, version and the instruction set of the evaluation.
 std::string version();
 
+/// What this build finds in images, and what it was built without: "finds AprilTags (libapriltag)".
+std::string found_targets();
+
+/// Why this build cannot find a target of `init` or `simulate` in photographs; empty if it can.
+/// @param target  "world_checkerboard"
+std::string fault_of_target(std::string_view target);
+
+/// Prints that, with what it finds instead, before anybody takes photographs.
+void note_fault_of_target(std::string_view target);
+
 }  // namespace kinecal::cli

@@ -313,14 +313,14 @@ std::string page_of(const Assembled& a, const Assembled& b, const Comparison& al
 }  // namespace
 
 int compare(const CompareOptions& options) {
+  if (!options.report.empty()) check_report(options.report, {}, false);
   const Assembled a(options.a), b(options.b);
   check_same_robot(a, b);
   Comparison all = compared(a, b);
   compare_poses(a, b, all);
   say("{}", text_of(a, b, all));
   if (!options.report.empty()) {
-    write_text_file(options.report,
-                    is_page(options.report) ? page_of(a, b, all) : json_of(a, b, all));
+    write_output(options.report, is_page(options.report) ? page_of(a, b, all) : json_of(a, b, all));
   }
   return kDone;
 }

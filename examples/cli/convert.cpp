@@ -90,7 +90,7 @@ std::string write_yaml(const Content& content, const std::string& output) {
   } else {
     write_samples(text, content.samples);
   }
-  write_text_file(output, text.str());
+  write_output(output, text.str());
   return counted_content(content);
 }
 
@@ -116,7 +116,7 @@ std::optional<std::string> write_bag(const ConvertOptions& options, Encoding enc
     write_poses(bag, content.poses);
   }
   if (!diagnostics.errors.empty()) return std::nullopt;
-  bag.finish();
+  bag.finish(existing_at(options.output));
   return words;
 }
 

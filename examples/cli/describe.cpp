@@ -164,6 +164,8 @@ std::string bash_completion(const CLI::App& app) {
   return "# Completion of kinecal for bash.\n_kinecal() {\n"
          "  local word=\"${COMP_WORDS[COMP_CWORD]}\" words=\"\"\n"
          "  local command=\"${COMP_WORDS[1]}\" before=\"${COMP_WORDS[COMP_CWORD-1]}\"\n"
+         "  if [ \"$word\" = \"=\" ]; then word=\"\"\n"
+         "  elif [ \"$before\" = \"=\" ]; then before=\"${COMP_WORDS[COMP_CWORD-2]}\"; fi\n"
          "  case \"$command $before\" in\n" +
          values + "    \"help help\") words=\"" + names +
          "\" ;;\n  esac\n"
@@ -232,7 +234,7 @@ int describe(const CLI::App& app, const DescribeOptions& options) {
     say("{}", text);
   } else {
     check_output(options.output, {}, options.force);
-    write_text_file(options.output, text);
+    write_output(options.output, text);
   }
   return kDone;
 }

@@ -234,7 +234,8 @@ std::vector<Thumbnail> thumbnails_of(std::vector<Look> looks) {
 void write(const DetectOptions& options, const std::vector<Sample>& samples) {
   const OutputFolder folder(folder_of(options.output));  // creates it if it is missing
   write_recording(options.output, samples,
-                  options.urdf.empty() ? "" : detail::read_text_file(options.urdf));
+                  options.urdf.empty() ? "" : detail::read_text_file(options.urdf),
+                  existing_at(options.output));
 }
 
 }  // namespace

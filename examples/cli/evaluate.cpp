@@ -41,7 +41,7 @@ std::string change_line(const std::vector<FitChange>& changes) {
 
 int evaluate(const RecheckOptions& options) {
   const StoredResult result = read_result(options.result);
-  if (!options.report.empty()) check_output(options.report, options.samples, true);
+  if (!options.report.empty()) check_report(options.report, options.samples, false);
   const NewSamples fresh =
       read_new_samples(result, {options.samples, options.cameras, options.recorded});
   print(fresh.diagnostics);
@@ -53,7 +53,7 @@ int evaluate(const RecheckOptions& options) {
   const std::vector<FitChange> changes = fit_changes(result, fresh);
   if (!changes.empty()) text += "\n" + change_line(changes);
   show(text, options.manner);
-  if (!options.report.empty()) write_text_file(options.report, json(result, fresh));
+  if (!options.report.empty()) write_output(options.report, json(result, fresh));
   const bool fails = options.fail_above > 0.0 &&
                      std::any_of(changes.begin(), changes.end(), [&](const FitChange& change) {
                        return !(change.times() <= options.fail_above);

@@ -103,7 +103,7 @@ int identify(const IdentifyOptions& options) {
     say("{} · {} was not written\n", findings_line(findings), options.output);
     return kNotUsable;
   }
-  write_text_file(options.output, found_config(found));
+  write_output(options.output, found_config(found));
   std::string line = findings_line(findings) + " · " + options.output;
   for (const std::string& report : options.reports) line += " · " + report;
   say("{}\n", line);

@@ -254,7 +254,7 @@ std::vector<Sample> read_from(const Robot& robot, const InitOptions& options) {
       (!options.force || !detail::read_text_file(columns).starts_with(kProposedColumnsMark))) {
     say("{} is there and is used\n", columns);
   } else {
-    write_text_file(columns, proposed_columns(robot, detail::read_text_file(table), table));
+    write_output(columns, proposed_columns(robot, detail::read_text_file(table), table));
     say("wrote {}\n  what each column of {} means, as far as names and values tell: look at it\n",
         columns, table);
   }
@@ -368,7 +368,7 @@ void write_capture(const Robot& robot, const InitAnswers& answers, const InitOpt
         capture_names(robot, answers));
     return;
   }
-  write_text_file(file, text);
+  write_output(file, text);
   say("wrote {}\n  fill in what is zero: its sizes decide the scale of the result\n", file);
 }
 
@@ -423,14 +423,17 @@ int init(const InitOptions& options) {
   const Robot robot = parse_urdf(urdf_text, options.urdf);
   const Configured made = configure(robot, options);
   check();  // the file may have appeared meanwhile
-  write_text_file(options.output, made.text);
+  write_output(options.output, made.text);
   if (made.text.find("sigma: ") != std::string::npos) {
     say("note: each sigma in {} is a guess of a residual, errors of the robot included; replace "
         "it\n  by the noise that kinecal calibrate reports, or remove it\n",
         options.output);
   }
   say("wrote {}\n", options.output);
-  if (options.from.empty()) write_capture(robot, made.answers, options);
+  if (options.from.empty()) {
+    write_capture(robot, made.answers, options);
+    note_fault_of_target(to_string(made.answers.target, made.answers.board));
+  }
   say("{}", joint_zeros_text(robot, urdf_text, made.text, options));
   std::vector<std::string> named = options.from;
   named.push_back(options.urdf);

@@ -32,6 +32,7 @@ int init_cameras(const InitOptions& options) {
   if (!target || !is_board(target->target)) {
     throw InputError("--target: cameras alone see a board: checkerboard, apriltag or charuco");
   }
+  note_fault_of_target(target->word);
   const std::filesystem::path folder = folder_of(options.output);
   const std::string capture = !options.capture.empty() ? options.capture
                               : folder == "."          ? "capture.yaml"
@@ -65,15 +66,15 @@ int init_cameras(const InitOptions& options) {
         corner_samples(options.corners, options.target_points, options.cameras);
     std::ostringstream yaml;
     write_samples(yaml, samples);
-    write_text_file(options.output, text);
-    write_text_file(samples_file, yaml.str());
+    write_output(options.output, text);
+    write_output(samples_file, yaml.str());
     say("wrote {} and {}: {}\n", options.output, samples_file, counted(samples.size(), "image"));
     say("next: {}\n",
         calibrate_command({.config = options.output, .samples = {samples_file}}).str());
     return kDone;
   }
-  write_text_file(options.output, text);
-  write_text_file(capture, finder);
+  write_output(options.output, text);
+  write_output(capture, finder);
   say("wrote {} and {}\n  fill in what is zero in {}: its sizes decide the scale\n", options.output,
       capture, capture);
   const ShellCommand detect =

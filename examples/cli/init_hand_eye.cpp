@@ -75,6 +75,7 @@ int init_hand_eye(const InitOptions& options) {
     return init_hand_eye_samples(options);
   }
   const InitTargetWord word = board_of(options);
+  if (options.corners.empty()) note_fault_of_target(word.word);
   const InitAnswers answers = answers_of(word, options);
   const std::filesystem::path folder = folder_of(options.output);
   const auto beside = [&](const char* name) {
@@ -100,14 +101,14 @@ int init_hand_eye(const InitOptions& options) {
                              .camera_on_hand = word.target == InitTarget::world_checkerboard};
   const std::string config = initial_config(robot, answers);
   Diagnostics diagnostics;
-  write_text_file(columns, hand_eye_columns(tables, folder.string(), diagnostics));
+  write_output(columns, hand_eye_columns(tables, folder.string(), diagnostics));
   const CsvMapping mapping =
       read_csv_mapping(columns, diagnostics, has_corners ? CsvUse::samples : CsvUse::joints);
   const std::vector<Sample> samples =
       csv_samples(read_pose_table(options.poses), mapping, options.poses, diagnostics);
   print_or_throw(diagnostics);
-  write_text_file(urdf, urdf_text);
-  write_text_file(options.output, config);
+  write_output(urdf, urdf_text);
+  write_output(options.output, config);
   say("wrote {}, {} and {}\n  {} of the flange; {} says how the columns are read: look at it\n",
       urdf, columns, options.output, counted(samples.size(), "pose"), columns);
   InputOptions inputs_of_calibrate{
@@ -118,7 +119,7 @@ int init_hand_eye(const InitOptions& options) {
         calibrate_command(inputs_of_calibrate).str());
     return kDone;
   }
-  write_text_file(capture, initial_capture(robot, answers));
+  write_output(capture, initial_capture(robot, answers));
   say("wrote {}\n  fill in what is zero: its sizes decide the scale of the result\n", capture);
   const ShellCommand detect =
       ShellCommand{"kinecal", "detect", shell_file(capture), "--images", "images"}

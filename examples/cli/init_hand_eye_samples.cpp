@@ -112,9 +112,9 @@ int init_hand_eye_samples(const InitOptions& options) {
   print_or_throw(diagnostics);
   std::ostringstream text;
   write_samples(text, samples);
-  write_text_file(urdf, hand_eye_urdf(on_hand));
-  write_text_file(options.output, hand_eye_pose_config(on_hand));
-  write_text_file(samples_file, text.str());
+  write_output(urdf, hand_eye_urdf(on_hand));
+  write_output(options.output, hand_eye_pose_config(on_hand));
+  write_output(samples_file, text.str());
   say("wrote {}, {} and {}\n  {} of the flange and of the object in the camera, which is {}\n",
       urdf, options.output, samples_file, counted(samples.size(), "pose"),
       on_hand ? "on the hand" : "beside the robot");

@@ -186,8 +186,13 @@ void print_or_throw(const Diagnostics& diagnostics) {
 
 void print(const Diagnostics& diagnostics) {
   const auto print_each = [](const char* kind, const std::vector<std::string>& messages) {
-    for (const std::string& message : messages) {
-      say(stderr, "{}: {}\n", kind, with_hanging_lines(message));
+    constexpr std::size_t kMost = 50;  // a file can cause 100 000 of them
+    const std::size_t shown = messages.size() <= kMost + 1 ? messages.size() : kMost;
+    for (std::size_t i = 0; i < shown; ++i) {
+      say(stderr, "{}: {}\n", kind, with_hanging_lines(messages[i]));
+    }
+    if (shown < messages.size()) {
+      say(stderr, "{}: and {} more {}s\n", kind, messages.size() - shown, kind);
     }
   };
   print_each("note", diagnostics.notes);

@@ -21,9 +21,9 @@ void judge_files_of(const ResultOptions& options, const Robot& robot,
 
 /// The files of a result, and copies of its URDF and configuration.
 /// @throws OutputError  if one would replace an input, or may not be replaced
-[[nodiscard]] std::vector<OutputFile> with_copies(const ResultOptions& options,
-                                                  const InputTexts& texts,
-                                                  std::vector<OutputFile> files);
+[[nodiscard]] std::vector<OutputFile> files_of(const ResultOptions& options,
+                                               const InputTexts& texts,
+                                               const CalibratedRobot& calibrated);
 
 /// Writes all files or none, and prints their names.
 /// @param force  replaces files that have appeared meanwhile

@@ -5,11 +5,25 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/files/results/output_file.hpp"
+
 namespace kinecal::cli {
 
 /// Checks that an output can be written, is not an input, and does not exist or may be replaced.  With "-", the standard output is kept for it.
+/// Remembers whether it was there: see existing_at().
 /// @throws OutputError  if not
 void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force);
+
+/// What becomes of a file of this name when the program writes it: kept if it has appeared since
+/// check_output(), unless that was forced.  From then on the file is the program's own.
+[[nodiscard]] Existing existing_at(const std::string& output);
+
+/// write_text_file(), with existing_at().
+/// @throws OutputError  naming the file
+void write_output(const std::string& output, const std::string& content);
+
+/// The same for a report, which replaces one that is there already.
+void check_report(const std::string& output, const std::vector<std::string>& inputs, bool force);
 
 /// The same for a picture, which is PNG.
 void check_picture(const std::string& output, const std::vector<std::string>& inputs, bool force);

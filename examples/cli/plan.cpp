@@ -46,9 +46,11 @@ Accuracy accuracy_of_plan(const std::string& text) {
 double wanted_position(const std::string& text, const StudyInput& input) {
   const Accuracy accuracy = accuracy_of_plan(text);
   if (!accuracy.frame.empty() && !same_frame(accuracy.frame, input.setup.frame.name())) {
+    const std::string& calibrated = input.setup.frame.name();
+    std::string right = text;
+    right.replace(right.find(accuracy.frame), accuracy.frame.size(), calibrated);
     throw InputError("--accuracy: '" + accuracy.frame + "' is not what is calibrated: '" +
-                     input.setup.frame.name() + "' in '" + input.setup.in.name() +
-                     "'; write 'gripper 0.5 mm'");
+                     calibrated + "' in '" + input.setup.in.name() + "'; write '" + right + "'");
   }
   if (!accuracy.position) {
     throw InputError("--accuracy: an angle is given; give a length, such as 'gripper 0.5 mm'");
@@ -324,7 +326,7 @@ void write_outputs(const PlanOptions& options, const StudyInput& input, const Po
     say("{}: not written, no more poses are needed\n", options.output);
   }
   if (options.report.empty()) return;
-  write_text_file(options.report, plan_page(input, findings));
+  write_output(options.report, plan_page(input, findings));
   say("{}\n", options.report);
 }
 

@@ -135,7 +135,7 @@ int plot(const PlotOptions& options) {
                  {options.report}, options.force);
   }
   OutputFolder folder(options.output);
-  folder.write(files);
+  folder.write(files, options.force ? Existing::replaced : Existing::kept);
   for (const OutputFile& file : files) {
     say("wrote {}\n", (folder.path() / file.name).string());
   }

@@ -152,11 +152,11 @@ void write_pose_file(const std::string& path, const std::vector<CapturePose>& po
     const OutputFolder folder(folder_of(path));  // creates it if it is missing
     BagOutput bag(path, *encoding);
     write_poses(bag, poses);
-    bag.finish();
+    bag.finish(existing_at(path));
   } else {
     std::ostringstream text;
     write_poses_yaml(text, poses);
-    write_text_file(path, text.str());
+    write_output(path, text.str());
   }
 }
 

@@ -5,23 +5,43 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "commands.hpp"
 #include "describe.hpp"
+#include "kinecal/files/poses/pose_numbers.hpp"
 #include "kinecal/text/name_list.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/text/shell_command.hpp"
+#include "kinecal/tools/init/init_answers.hpp"
+#include "terminal.hpp"
 
 namespace {
 
 using namespace kinecal::cli;
+
+/// The type of an option whose values help and completion list, as CLI11 writes it; the command refuses
+/// others with better words.
+std::string one_of(const std::string& type, const std::vector<std::string>& values) {
+  std::string list;
+  for (const std::string& value : values) list += (list.empty() ? "" : ",") + value;
+  return type + ":{" + list + "}";
+}
+
+std::vector<std::string> target_words() {
+  std::vector<std::string> words;
+  for (const kinecal::InitTargetWord& target : kinecal::kInitTargets)
+    words.emplace_back(target.word);
+  return words;
+}
 
 void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
   command
@@ -312,7 +332,7 @@ void add_init(CLI::App& command, InitOptions& options) {
           "euler_zyx, ...; "
           "default: by their names, and by what the camera sees")
       ->needs(poses)
-      ->type_name("FORM");
+      ->type_name(one_of("FORM", kinecal::pose_form_names()));
   command.add_flag("--inverse", options.inverse, "--poses has the poses of the base in the flange")
       ->needs(poses);
   CLI::Option* corners =
@@ -349,7 +369,7 @@ void add_init(CLI::App& command, InitOptions& options) {
           "also goes with another: leds,ground")
       ->delimiter(',')
       ->excludes(from)
-      ->type_name("TARGET");
+      ->type_name(one_of("TARGET", target_words()));
   command
       .add_option(
           "--target-frame", options.target_frame,
@@ -366,7 +386,7 @@ void add_init(CLI::App& command, InitOptions& options) {
   command
       .add_option("--camera-type", options.camera_type,
                   "camera3d (points in metres), the default, or camera2d (pixels)")
-      ->type_name("TYPE");
+      ->type_name(one_of("TYPE", {"camera2d", "camera3d"}));
   command
       .add_option("--robot-camera-name", options.camera_name,
                   "sensor_name of the camera in the samples, default: 'camera'")
@@ -394,7 +414,8 @@ void add_simulate(CLI::App& command, SimulateOptions& options) {
   command
       .add_option(
           "--target", options.target,
-          "checkerboard (default), apriltag, aprilgrid (Kalibr's), ground, or leds for a session")
+          "checkerboard (default, apriltag if this build does not find it), apriltag, aprilgrid "
+          "(Kalibr's), ground, or leds for a session")
       ->excludes(scene)
       ->check(CLI::IsMember({"checkerboard", "apriltag", "aprilgrid", "ground", "leds"}));
   command.add_option("--poses", options.poses, "number of images, default: 30")
@@ -1090,10 +1111,11 @@ void add_commands(Commands& commands, const kinecal::ShellCommand& line) {
       add_rpy, rpy);
 }
 
-/// `help` and `help COMMAND` are `--help` and `COMMAND --help`.  A word that is not a command stays, and
+/// No argument, `help` and `help COMMAND` are `--help` and `COMMAND --help`.  A word that is not a command stays, and
 /// is refused.
 void replace_help(const CLI::App& app, std::vector<std::string>& arguments) {
-  if (arguments.empty() || arguments.back() != "help") return;
+  if (arguments.empty()) arguments = {"help"};
+  if (arguments.back() != "help") return;
   arguments.pop_back();
   const std::string command = arguments.empty() ? "" : arguments.back();
   if (command.empty() || command.starts_with("-")) {
@@ -1105,10 +1127,17 @@ void replace_help(const CLI::App& app, std::vector<std::string>& arguments) {
   }
 }
 
+/// The exit code, or an error if something that was printed did not arrive: on a full disk.
+int if_printed(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  std::fprintf(stderr, "error: cannot write to the standard output\n");
+  return kBadInput;
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.",
                "kinecal");
-  app.set_version_flag("--version", version());
+  app.set_version_flag("--version", [] { return version() + "\n" + found_targets(); });
   app.require_subcommand(1);
   app.footer("'kinecal help COMMAND' lists the options of a command.");
   Commands commands(app);
@@ -1130,12 +1159,13 @@ int run(int argc, char** argv) {
     app.failure_message([&](const CLI::App*, const CLI::Error& error) {
       return kinecal::printable(commands.refusal(given, error));
     });
-    return app.exit(e) == 0 ? kDone : kBadInput;
+    std::ostringstream out, err;
+    const bool is_help = app.exit(e, out, err) == 0;
+    say("{}", out.str());
+    say(stderr, "{}", err.str());
+    return if_printed(is_help ? kDone : kBadInput);
   }
-  const int code = commands.run_called();
-  if (std::fflush(stdout) == 0) return code;
-  std::fprintf(stderr, "error: cannot write to the standard output\n");
-  return kBadInput;
+  return if_printed(commands.run_called());
 }
 
 }  // namespace
@@ -1145,6 +1175,9 @@ namespace kinecal {
 int run_program(int argc, char** argv) {
   try {
     return run(argc, argv);
+  } catch (const std::filesystem::filesystem_error& e) {  // such as a name that is too long
+    const std::string what = e.path1().string() + ": " + e.code().message();
+    std::fprintf(stderr, "error: %s\n", printable(cli::with_hanging_lines(what)).c_str());
   } catch (const std::exception& e) {
     std::fprintf(stderr, "error: %s\n", printable(cli::with_hanging_lines(e.what())).c_str());
   }

@@ -29,7 +29,7 @@ void set_progress(bool wanted) {
 }
 
 bool shows_progress() {
-  return progress_is_wanted && isatty(STDERR_FILENO) != 0;
+  return progress_is_wanted && obeys_escapes(STDERR_FILENO);
 }
 
 std::string progress_text(double fraction, const std::string& what, double seconds) {

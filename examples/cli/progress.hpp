@@ -17,7 +17,7 @@ namespace kinecal::cli {
 /// Shows progress from now on, or not: --quiet.
 void set_progress(bool wanted);
 
-/// Whether progress is shown: it is wanted, and standard error is a terminal.
+/// Whether progress is shown: it is wanted, and standard error is a terminal on which a line can be overwritten.
 [[nodiscard]] bool shows_progress();
 
 /// The line.  Overwritten ten times a second and erased at the end; prints nothing unless

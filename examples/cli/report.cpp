@@ -155,15 +155,14 @@ void check_reports(const CalibrateOptions& options) {
       inputs.push_back((std::filesystem::path(options.output) / result).string());
     }
   }
-  constexpr bool kReplace = true;
-  for (const std::string& report : options.reports) check_output(report, inputs, kReplace);
+  for (const std::string& report : options.reports) check_report(report, inputs, options.force);
 }
 
 void write_reports(const CalibrateOptions& options, const InputTexts& texts,
                    const CalibratedRobot& calibrated) {
   for (const std::string& report : options.reports) {
-    write_text_file(report,
-                    is_page(report) ? page(options, texts, calibrated) : json_report(calibrated));
+    write_output(report,
+                 is_page(report) ? page(options, texts, calibrated) : json_report(calibrated));
   }
 }
 

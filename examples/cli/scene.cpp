@@ -33,7 +33,7 @@ void write_scene_file(const std::string& file, const CalibratedRobot& calibrated
   const RobotScene scene = scene_of(calibrated, mesh_paths, {.samples = 1000, .features = 100000});
   std::ostringstream bytes;
   write_scene(scene, bytes, best_mcap_compression());
-  write_text_file(file, bytes.str());
+  write_output(file, bytes.str());
   say(stderr, "wrote {}{}\n", file, scene.thinned.empty() ? "" : ": " + scene.thinned);
 }
 

@@ -20,7 +20,7 @@ std::string write_sheets(const std::string& output, const std::vector<Thumbnail>
   std::string names;
   for (std::size_t number = 0; number < sheets.size(); ++number) {
     const std::string name = sheet_name(output, number);
-    write_text_file(name, sheets[number]);
+    write_output(name, sheets[number]);
     names += (names.empty() ? "" : ", ") + name;
   }
   for (std::size_t number = sheets.size(); number > 0; ++number) {

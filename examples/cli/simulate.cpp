@@ -48,11 +48,20 @@ void write(const std::filesystem::path& path, PhotographFiles files) {
 }
 
 /// The scene, for sessions with `kinecal capture --robot simulated:scene.yaml`.
-std::string scene_text(const SimulateOptions& options) {
+std::string scene_text(const SimulateOptions& options, const std::string& target) {
   if (!options.scene.empty()) return detail::read_text_file(options.scene);
   std::string text = fmt::format("seed: {}\n", std::max(1, options.seed));
-  if (!options.target.empty()) text += fmt::format("target: {{type: {}}}\n", options.target);
+  if (!target.empty()) text += fmt::format("target: {{type: {}}}\n", target);
   return text;
+}
+
+/// The target that is asked for, or another one if this build cannot find the usual one; empty: the usual one,
+/// or that of the scene.
+std::string target_of(const SimulateOptions& options) {
+  if (!options.target.empty() || !options.scene.empty()) return options.target;
+  const bool only_tags =
+      !fault_of_target("checkerboard").empty() && fault_of_target("apriltag").empty();
+  return only_tags ? "apriltag" : "";
 }
 
 }  // namespace
@@ -62,10 +71,12 @@ int simulate(const SimulateOptions& options) {
   check_folder(folder, options.force);
   const Robot robot = read_urdf(options.urdf);
   Diagnostics diagnostics;
-  SimulationPlan plan = read_simulation(robot, options.scene, options.target,
+  const std::string target = target_of(options);
+  SimulationPlan plan = read_simulation(robot, options.scene, target,
                                         static_cast<std::uint64_t>(options.seed), diagnostics);
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
+  note_fault_of_target(plan.target.type);
   if (options.poses > 0) plan.poses = options.poses;
   const std::vector<JointTarget> poses = poses_of(plan);
   PhotographFiles files;
@@ -80,8 +91,9 @@ int simulate(const SimulateOptions& options) {
   }
   for (const std::string& skipped : files.skipped) say(stderr, "warning: {}\n", skipped);
   files.others.push_back({"robot.urdf", detail::read_text_file(options.urdf)});
-  files.others.push_back({"scene.yaml", scene_text(options)});
+  files.others.push_back({"scene.yaml", scene_text(options, target)});
   const std::size_t images = files.images.size();
+  check_folder(folder, options.force);  // one may have appeared meanwhile
   write(folder, std::move(files));
   const std::string what =
       images > 0 ? fmt::format("{} images", images)

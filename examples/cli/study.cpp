@@ -240,13 +240,14 @@ void report(const StudyOptions& options, const StudyInput& input, const std::vec
     return;
   }
   if (!options.report.empty()) {
-    write_text_file(options.report, study_page(input, result));
+    write_output(options.report, study_page(input, result));
     say("{}\n", options.report);
   }
   if (output == nullptr) return;
   std::string lines = trial_columns(free_names(input)) + "\n";
   for (const auto& [job, trial] : trials) lines += trial_line(trial) + "\n";
-  output->write({{kTrials, lines}, {kTables, text}, {kJson, study_json(input, result)}});
+  output->write({{kTrials, lines}, {kTables, text}, {kJson, study_json(input, result)}},
+                options.force ? Existing::replaced : Existing::kept);
   StudyJournal::remove(options.output);
 }
 

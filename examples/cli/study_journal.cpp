@@ -13,6 +13,7 @@
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
+#include "kinecal/report/residual_rows.ipp"
 
 namespace kinecal::cli {
 namespace {
@@ -98,7 +99,7 @@ std::string trial_columns(const std::vector<std::string>& parameters) {
       "robot,poses,repeat,converged,ruined,left_out,position,rotation,reprojection,systematic,"
       "nonlinearity,"
       "solves";
-  for (const std::string& name : parameters) line += "," + name;
+  for (const std::string& name : parameters) line += "," + detail::csv_cell(name);
   return line;
 }
 

@@ -34,9 +34,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kStyles =
 bool is_colored(const Manner& manner) {
   if (manner.color != "auto") return manner.color == "always";
   const char* const off = std::getenv("NO_COLOR");
-  const char* const kind = std::getenv("TERM");
-  const bool is_dumb = kind == nullptr || std::string_view(kind) == "dumb";
-  return isatty(STDOUT_FILENO) != 0 && (off == nullptr || *off == '\0') && !is_dumb;
+  return obeys_escapes(STDOUT_FILENO) && (off == nullptr || *off == '\0');
 }
 
 std::string colored(std::string_view text) {
@@ -59,11 +57,32 @@ std::string colored(std::string_view text) {
 
 }  // namespace
 
-std::string with_hanging_lines(std::string message) {
-  for (std::size_t at = 0; (at = message.find('\n', at)) != std::string::npos; ++at) {
-    message.insert(at + 1, "  ");
+std::string with_hanging_lines(std::string_view message) {
+  constexpr std::size_t kMostLines = 50, kLongest = 3000, kFirst = 2000, kLast = 500;
+  std::string shown;
+  std::size_t at = 0;
+  for (std::size_t lines = 0; at <= message.size() && lines < kMostLines; ++lines) {
+    const std::size_t end = std::min(message.find('\n', at), message.size());
+    const std::string_view line = message.substr(at, end - at);
+    if (at > 0) shown += "\n  ";
+    if (line.size() > kLongest) {
+      shown.append(line.substr(0, kFirst)).append(" ... ");
+      shown.append(line.substr(line.size() - kLast));
+    } else {
+      shown += line;
+    }
+    at = end + 1;
   }
-  return message;
+  if (at >= message.size()) return shown;
+  const auto others =
+      1 + std::count(message.begin() + static_cast<std::ptrdiff_t>(at), message.end(), '\n');
+  return shown + fmt::format("\n  and {} more lines", others);
+}
+
+bool obeys_escapes(int descriptor) {
+  const char* const kind = std::getenv("TERM");
+  const bool is_dumb = kind == nullptr || std::string_view(kind) == "dumb";
+  return isatty(descriptor) != 0 && !is_dumb;
 }
 
 std::size_t terminal_width(int descriptor) {

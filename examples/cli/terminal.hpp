@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "kinecal/text/printable.hpp"
@@ -35,7 +36,11 @@ void say(fmt::format_string<T...> format, T&&... arguments) {
 }
 
 /// A message whose further lines are indented, so that what it quotes from a file cannot begin a line.
-[[nodiscard]] std::string with_hanging_lines(std::string message);
+/// What a hostile file makes endless is cut: a line to 2500 bytes, a message to 50 lines.
+[[nodiscard]] std::string with_hanging_lines(std::string_view message);
+
+/// True for a terminal that moves its cursor and changes colors: not with TERM=dumb, as in Emacs.
+[[nodiscard]] bool obeys_escapes(int descriptor);
 
 /// Columns of the terminal behind a file descriptor; 80 if that is not known.
 [[nodiscard]] std::size_t terminal_width(int descriptor);

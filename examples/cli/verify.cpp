@@ -322,7 +322,7 @@ std::string json(const Check& check) {
 
 int verify(const RecheckOptions& options) {
   const StoredResult result = read_result(options.result);
-  if (!options.report.empty()) check_output(options.report, options.samples, true);
+  if (!options.report.empty()) check_report(options.report, options.samples, false);
   const NewSamples fresh =
       read_new_samples(result, {options.samples, options.cameras, options.recorded, options.level});
   print(fresh.diagnostics);
@@ -344,7 +344,7 @@ int verify(const RecheckOptions& options) {
   if (const std::string moved = movers_text(check); !moved.empty()) text += moved + "\n";
   text += fit_text(result, fresh) + "\n" + worst_text(result, fresh) + "\n" + next_text(check);
   show(text, options.manner);
-  if (!options.report.empty()) write_text_file(options.report, json(check));
+  if (!options.report.empty()) write_output(options.report, json(check));
   return check.drift.holds ? kDone : kNotUsable;
 }
 

@@ -13,6 +13,7 @@
 namespace kinecal {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -520,6 +521,25 @@ TEST(ReadConfig, ItemsOfTheOtherDialectAreExplained) {
               ElementsAre("calibrate.yaml:11: step 'calibrate': free_frames: a map is not a name; "
                           "under ros__parameters a list holds names, and the map of each stands "
                           "beside the list"));
+}
+
+TEST(ReadConfig, MoreThanARobotHasIsAnErrorAndNamesAreOfFiles) {
+  const auto with_models = [](int count, const std::string& name) {
+    std::string models;
+    for (int i = 0; i < count; ++i) {
+      models += " - {name: " + name + std::to_string(i) + ", type: chain, frame: tip}\n";
+    }
+    return with(kRos1, "free_params", models + "free_params");
+  };
+  EXPECT_THAT(errors(with_models(497, "m")), IsEmpty());
+  EXPECT_THAT(errors(with_models(498, "m")),
+              Contains("calibrate.yaml:503: models has 501 items, and at most 500 are read"));
+  EXPECT_THAT(errors(with_models(1, std::string(199, 'm'))), IsEmpty());
+  EXPECT_THAT(errors(with_models(1, std::string(200, 'm'))),
+              ElementsAre(AllOf(HasSubstr("calibrate.yaml:6: model 'mmm"),
+                                HasSubstr("...' has a name of 201 characters; at most 200"))));
+  EXPECT_THAT(errors(with(kRos2, "[board]", "[" + std::string(201, 'b') + "]")),
+              Contains(HasSubstr("has a name of 201 characters")));
 }
 
 TEST(ReadConfig, NamesThatOccurTwiceAreErrorsWithBothLines) {

@@ -79,22 +79,27 @@ TEST_F(CaptureProgram, ResumesWhereItEnded) {
   // The robot is lost after a while: a fault of the scene.
   std::ofstream(folder_ / "sim/lost.yaml")
       << std::ifstream(folder_ / "sim/scene.yaml").rdbuf() << "faults: {connection_ends: 25}\n";
-  const Outcome lost = run(kProgram +
-                           " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
-                           "--robot simulated:sim/lost.yaml -o samples.yaml");
+  const Outcome lost =
+      run(kProgram +
+          " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
+          "--robot simulated:sim/lost.yaml -o samples.yaml --contact-sheet views.png");
   EXPECT_EQ(lost.code, 1) << lost.out;
   EXPECT_THAT(lost.err, HasSubstr("--resume goes on from here"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "views.png"));
   const int before = samples();
   EXPECT_GT(before, 0);
   EXPECT_LT(before, 6);
   EXPECT_EQ(capture("").code, 1);  // the file is there
-  const Outcome rest = capture("--resume");
+  EXPECT_EQ(capture("--contact-sheet views.png").code, 1);
+  const Outcome rest = capture("--resume --contact-sheet views.png");
   EXPECT_EQ(rest.code, 0) << rest.err;
   EXPECT_THAT(rest.out, AllOf(HasSubstr("(" + std::to_string(before) + " from before)"),
-                              ContainsRegex("pose 2 of [0-9]: .*; [0-9]+ s left\n"),
-                              ContainsRegex("features\n")))
+                              HasSubstr("pose " + std::to_string(before + 1) + " of 6: "),
+                              ContainsRegex("pose [2-5] of 6: .*; [0-9]+ s left\n"),
+                              ContainsRegex("pose 6 of 6: .*features\n")))
       << "nothing is left after the last pose";
   EXPECT_EQ(samples(), 6);
+  EXPECT_NE(read("views.png"), sheet);
   EXPECT_EQ(capture("--resume").out,
             "samples.yaml: 6 samples from before; all poses of sim/poses.yaml are captured\n");
 }

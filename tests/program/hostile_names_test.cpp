@@ -164,6 +164,17 @@ TEST_P(HostileNames, AreNamesInEveryFile) {
     EXPECT_EQ(cell.starts_with('\'') ? cell.substr(1) : cell, name_);
     EXPECT_THAT(row.cells.at(2), HasSubstr(as_file(name_) + ".yaml:"));
   }
+  ASSERT_EQ(kinecal("study --robots 2 --output study --urdf arm.urdf --config c.yaml --samples=" +
+                    quoted(as_file(name_) + ".yaml"))
+                .code,
+            0);
+  const auto trials = detail::csv_rows(read("study/trials.csv"), ',', "trials.csv", diagnostics);
+  ASSERT_EQ(trials.size(), 3U);
+  EXPECT_EQ(trials[0].cells.size(), trials[1].cells.size());
+  for (const std::string& cell : trials[0].cells) {
+    EXPECT_EQ(std::string("=+-@").find(cell.front()), std::string::npos) << cell;
+  }
+  EXPECT_THAT(trials[0].cells, Contains(testing::EndsWith(name_ + " frame_x")));
   const YAML::Node values = YAML::Load(result(name_, "calibration.yaml"));
   EXPECT_TRUE(values[name_]) << "the joint";
   EXPECT_TRUE(values[name_ + " frame_x"]);
@@ -200,6 +211,44 @@ TEST_F(Hostile, NamesThatEndALineAreRefusedAndForgeNoLine) {
     EXPECT_EQ((outcome.out + outcome.err).find("\nverdict: good"), std::string::npos)
         << outcome.err;
   }
+}
+
+/// Also names that only samples and files have.
+TEST_F(Hostile, LineEndsInSamplesAndNamesOfFilesForgeNoLine) {
+  const std::string forged = "x\nverdict: good", yaml = detail::name_to_yaml(forged);
+  write_input("arm");
+  const std::string samples = read("arm.yaml");
+  for (const std::string name : {"sensor_name: tracker", "frame_id: \"arm frame\"", "[arm, "}) {
+    const std::string key = name.substr(0, name.find(' ') + 1);
+    write("arm.yaml", with(samples, name, name[0] == '[' ? "[" + yaml + ", " : key + yaml));
+    ASSERT_NE(read("arm.yaml"), samples) << name;
+    for (const test::Outcome& outcome : {calibrate("arm"), kinecal("inspect arm.yaml")}) {
+      EXPECT_EQ(outcome.code, 1) << name << outcome.out;
+      EXPECT_THAT(outcome.err, HasSubstr("the name 'x verdict: good' has a line end")) << name;
+      EXPECT_EQ(("\n" + outcome.out + outcome.err).find("\nverdict: good"), std::string::npos);
+    }
+  }
+  write("arm.yaml", samples);
+  for (const char* file : {"arm.urdf", "c.yaml", "arm.yaml"}) {
+    write(forged, read(file));
+    const auto path = [&](const char* of) {
+      return quoted(of == std::string(file) ? forged : std::string(of));
+    };
+    const test::Outcome outcome =
+        kinecal("calibrate --urdf " + path("arm.urdf") + " --config " + path("c.yaml") +
+                " --samples " + path("arm.yaml") + " --dry-run");
+    EXPECT_EQ(outcome.code, 1) << file << outcome.out;
+    EXPECT_THAT(outcome.err, HasSubstr("'x verdict: good': the name of a file has a line end"));
+  }
+  const test::Outcome folder = kinecal(
+      "calibrate --urdf arm.urdf --config c.yaml --samples arm.yaml --output " + quoted(forged));
+  EXPECT_EQ(folder.code, 1) << folder.out;
+  EXPECT_THAT(folder.err, HasSubstr("'x verdict: good': the name of a folder has a line end"));
+  const test::Outcome report =
+      kinecal("calibrate --urdf arm.urdf --config c.yaml --samples arm.yaml --dry-run --report " +
+              quoted(forged));
+  EXPECT_EQ(report.code, 1) << report.out;
+  EXPECT_THAT(report.err, HasSubstr("'x verdict: good': the name of a file has a line end"));
 }
 
 }  // namespace

@@ -50,9 +50,10 @@ class Manners : public test::ProgramTest {
     write(file, text);
   }
   /// What the program prints on a terminal.
-  [[nodiscard]] std::string on_a_terminal(const std::string& arguments) const {
+  [[nodiscard]] std::string on_a_terminal(const std::string& arguments,
+                                          const std::string& kind = "xterm") const {
     int terminal = -1;
-    const std::string call = "cd " + folder_.string() + " && exec timeout 60 " +
+    const std::string call = "cd " + folder_.string() + " && TERM=" + kind + " exec timeout 60 " +
                              test::kinecal_program() + " " + arguments;
     const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
     if (child == 0) {
@@ -210,6 +211,10 @@ TEST_F(Manners, BashCompletesCommandsOptionsAndValues) {
   EXPECT_EQ(completed("calibrate --thr", 2), "--threads\n");
   EXPECT_EQ(completed("calibrate --offsets o", 3), "origin\n");
   EXPECT_EQ(completed("help ins", 2), "install inspect\n");
+  EXPECT_EQ(completed("init --target world_a", 3), "world_apriltag\n");
+  EXPECT_EQ(completed("init --form ku", 3), "kuka\n");
+  EXPECT_EQ(completed("calibrate --offsets = o", 4), "origin\n") << "as bash splits --offsets=o";
+  EXPECT_EQ(completed("calibrate --offsets =", 3), "rising origin ros2_control\n");
   EXPECT_EQ(completed("calibrate --urdf x", 3), "\n") << "files, which bash completes";
 }
 
@@ -367,6 +372,141 @@ TEST_F(Manners, ShowsHowFarReadingIsOnATerminalOnly) {
   EXPECT_LT(printed.rfind(" left\x1b[K"), printed.find("\r\x1b[K")) << "the line is erased";
   const Outcome silent = kinecal("inspect large.yaml");
   EXPECT_EQ(silent.err, "");
+  EXPECT_THAT(on_a_terminal("inspect large.yaml", "dumb"),
+              AllOf(HasSubstr(" samples\r\n"), Not(HasSubstr("\x1b")), Not(HasSubstr("reading"))));
+  EXPECT_THAT(on_a_terminal(kCalibrate + "--dry-run", "dumb"),
+              AllOf(HasSubstr("\nverdict: good"), Not(HasSubstr("\x1b")), Not(HasSubstr("\r\r"))));
+  EXPECT_THAT(on_a_terminal(kCalibrate + "--dry-run"), HasSubstr("\x1b[1;32mgood"));
+}
+
+/// Whatever is printed: a program that reads it must not take half of it for all.
+TEST_F(Manners, AFullDiskIsAnExitCodeOfEveryCommand) {
+  prepare();
+  const std::string input = " --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml ";
+  ASSERT_EQ(kinecal(kCalibrate + "--report r.html").code, 0);
+  for (const std::string& arguments :
+       {std::string(),
+        std::string("--help"),
+        std::string("--version"),
+        std::string("help plan"),
+        "calibrate" + input + "--dry-run",
+        "calibrate" + input + "--dry-run --quiet",
+        "calibrate" + input + "--dry-run --json",
+        "check" + input,
+        "identify" + input + "--force",
+        "plan" + input,
+        "select-poses --count 5" + input,
+        "study --robots 2" + input,
+        std::string("calibrate") + input + "--force --output other",
+        std::string("calibrate-log") + input + "--output log",
+        std::string("init --urdf ur5e.urdf --target tracker --arm tool0 --force"),
+        std::string("verify out samples.yaml"),
+        std::string("evaluate out samples.yaml"),
+        std::string("compare out out"),
+        std::string("inspect samples.yaml"),
+        std::string("convert samples.yaml - "),
+        std::string("convert samples.yaml again.yaml"),
+        std::string("plot r.html --list"),
+        std::string("plot r.html --output charts"),
+        "simulate " + test::source_folder() +
+            "/examples/mobile_manipulator/mobile_manipulator.urdf --target leds --poses 3 -o sim",
+        std::string("rpy 0.1 0.2 0.3"),
+        std::string("describe bash")}) {
+    const Outcome outcome = run("(timeout 60 " + test::kinecal_program() + " " + arguments +
+                                " < /dev/null > /dev/full; echo $?)");
+    EXPECT_EQ(outcome.out, "1\n") << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr("error: ")) << arguments;
+  }
+}
+
+/// A file that somebody writes while the program waits for its samples.
+TEST_F(Manners, AFileThatAppearsDuringTheRunIsKept) {
+  prepare();
+  const auto meanwhile = [&](const std::string& arguments, const std::string& file) {
+    return run("(sleep 1; printf precious > " + file + "; cat samples.yaml) | " +
+               test::kinecal_program() + " " + arguments);
+  };
+  const std::string calibrate =
+      "calibrate --urdf ur5e.urdf --config calibrate.yaml --samples - --output out "
+      "--report r.html --scene s.mcap";
+  for (const std::string file : {"r.html", "s.mcap", "out/calibrated.urdf"}) {
+    for (const char* other : {"r.html", "s.mcap", "out"}) fs::remove_all(folder_ / other);
+    const Outcome kept = meanwhile(calibrate, file);
+    EXPECT_EQ(kept.code, 1) << file;
+    EXPECT_THAT(kept.err, testing::ContainsRegex(file + ": (has appeared meanwhile|exists)"));
+    EXPECT_EQ(read(file), "precious");
+    EXPECT_FALSE(fs::exists(folder_ / "out/report.json")) << "all results or none";
+  }
+  fs::remove_all(folder_ / "out");
+  fs::remove(folder_ / "s.mcap");
+  write("r.html", "of an earlier run");  // which a report replaces
+  EXPECT_EQ(meanwhile(calibrate + " --force", "s.mcap").code, 0);
+  EXPECT_NE(read("r.html"), "of an earlier run");
+  EXPECT_NE(read("s.mcap"), "precious") << "forced";
+  for (const std::string file : {"c.yaml", "c.mcap", "c.bag"}) {
+    EXPECT_EQ(meanwhile("convert - " + file, file).code, 1);
+    EXPECT_EQ(read(file), "precious");
+  }
+}
+
+TEST_F(Manners, NoArgumentIsTheHelp) {
+  const Outcome bare = kinecal("");
+  EXPECT_EQ(bare.code, 0);
+  EXPECT_EQ(bare.err, "");
+  EXPECT_EQ(bare.out, kinecal("--help").out);
+  EXPECT_THAT(bare.out, AllOf(HasSubstr("calibrate the robot"), Not(HasSubstr("describe"))));
+}
+
+TEST_F(Manners, TheVersionSaysWhatThisBuildFindsAndInitNotesWhatItDoesNot) {
+  const std::string version = kinecal("--version").out;
+  const auto built_without = version.find("built without ");
+  EXPECT_THAT(version, AllOf(testing::StartsWith("kinecal "), HasSubstr("OpenCV"),
+                             HasSubstr("AprilTags (libapriltag)")));
+  for (const auto& [target, name] : {std::pair("checkerboard", "checkerboards (OpenCV)"),
+                                     std::pair("charuco", "ChArUco boards (OpenCV)"),
+                                     std::pair("apriltag", "AprilTags (libapriltag)")}) {
+    const bool is_missing = version.find(name) > built_without;
+    const Outcome made = kinecal(std::string("init --cameras c --force --target ") + target);
+    EXPECT_EQ(made.code, 0) << made.err;
+    EXPECT_EQ(made.err.find("note: this kinecal was built without") != std::string::npos,
+              is_missing)
+        << target << made.err;
+  }
+}
+
+TEST_F(Manners, WhatAHostileFileRepeatsIsCounted) {
+  prepare();
+  std::string keys;
+  for (int i = 0; i < 20'000; ++i) keys += "zz" + std::to_string(i) + "_q: 1\n";
+  write("calibrate.yaml", read("calibrate.yaml") + keys);
+  const Outcome warned = kinecal("check --urdf ur5e.urdf --config calibrate.yaml");
+  EXPECT_EQ(warned.code, 0) << warned.out;
+  EXPECT_THAT(warned.err, AllOf(HasSubstr("unknown key 'zz49_q' is ignored\n"),
+                                HasSubstr("warning: and 19950 more warnings\n")));
+  EXPECT_LT(warned.err.size(), 10'000U);
+  write("long.yaml", std::string(1000, 'k') + ": " + std::string(1'000'000, 'x') + "\n");
+  const Outcome refused = kinecal("check --urdf ur5e.urdf --config long.yaml");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_LT(refused.err.size(), 10'000U) << refused.err.size();
+}
+
+TEST_F(Manners, ANameThatIsTooLongForAFileIsRefusedBeforeSolving) {
+  prepare();
+  const Outcome path = kinecal(
+      "calibrate --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml --output " +
+      std::string(300, 'd'));
+  EXPECT_EQ(path.code, 1);
+  EXPECT_THAT(path.err, AllOf(testing::StartsWith("error: ddd"), HasSubstr("File name too long\n"),
+                              Not(HasSubstr("symlink_status"))));
+  EXPECT_EQ(path.out, "");
+}
+
+TEST_F(Manners, AnAccuracyOfSomethingElseIsProposedWithTheNameThatIsCalibrated) {
+  prepare();
+  const std::string plan =
+      "plan --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml --accuracy ";
+  EXPECT_THAT(kinecal(plan + "'tool0 0.03 mm'").err, HasSubstr("write 'smr 0.03 mm'"));
+  EXPECT_THAT(kinecal(plan + "'  wrist 2 cm'").err, HasSubstr("write '  smr 2 cm'"));
 }
 
 }  // namespace

@@ -1058,7 +1058,7 @@ TEST_F(Program, ListsTheCommandsIfOneIsMisspelt) {
   EXPECT_EQ(misspelt.code, 1);
   EXPECT_THAT(misspelt.err, HasSubstr("error: 'calibrat' is not a command; did you mean "
                                       "'calibrate'?"));
-  EXPECT_THAT(run("").err, HasSubstr("error: no command is given; use one of init, "));
+  EXPECT_THAT(run("''").err, HasSubstr("error: no command is given; use one of init, "));
   EXPECT_THAT(
       run("check --config c.yaml --urfd x").err,
       AllOf(HasSubstr("error: "), HasSubstr("--urfd"), HasSubstr("'kinecal check --help'")));

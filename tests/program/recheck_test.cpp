@@ -311,6 +311,9 @@ TEST_F(Recheck, RefusesAResultThatWasChanged) {
     EXPECT_THAT(result.err, AllOf(HasSubstr(message), HasSubstr("calibrate again")));
     write("out/" + file, before);
   };
+  refused("calibration.yaml", "elbow: -0.0", "elbow: -0.1",
+          "out/calibration.yaml: is not the file that report.json was written with");
+  replace_in("out/report.json", "\"files\"", "\"none\"");  // as of an older version
   refused("calibration.yaml", "elbow: -0.0", "elbow: -0.1", "'elbow' is -0.1");
   refused("report.json", "\"covariance\"", "\"variance\"",
           "report.json: it has no field 'covariance'");
@@ -341,6 +344,40 @@ TEST_F(Recheck, RefusesSamplesOfAnotherRobotAndDoubtsDegrees) {
   const Outcome degrees = with_new("evaluate");
   EXPECT_EQ(degrees.code, 1) << degrees.out;
   EXPECT_THAT(degrees.err, HasSubstr("degrees"));
+}
+
+/// Files are replaced one after the other; a run that is killed leaves the first of them new.
+TEST_F(Recheck, FilesOfTwoRunsAreRefusedWhateverReadsThem) {
+  calibrate("whole");
+  slip(old_, "elbow", 0.02);
+  replace_in("c.yaml", " - elbow\n", " - elbow\n # again\n");
+  replace_in("arm.urdf", "<robot", "<!-- again --><robot");
+  calibrate("later");
+  const std::string launch =
+      "<launch><param name=\"calibration_date\" value=\"x\"/>"
+      "<param name=\"robot_description\" textfile=\"y\"/></launch>";
+  const auto run_all = [&](int code) {
+    for (const char* command : {"verify", "evaluate"}) {
+      const Outcome outcome = with_new(command);
+      EXPECT_EQ(outcome.code, code) << command << outcome.out << outcome.err;
+      if (code != 0) EXPECT_THAT(outcome.err, HasSubstr("a run was interrupted while it replaced"));
+    }
+    fs::remove_all(folder_ / "robot");
+    fs::create_directory(folder_ / "robot");
+    write("robot/robot.launch", launch);
+    EXPECT_EQ(kinecal("install out --to robot").code, code);
+    EXPECT_EQ(kinecal("compare out whole").code, code);
+    if (code != 0) EXPECT_EQ(read("robot/robot.launch"), launch);
+  };
+  for (const char* replaced :
+       {"calibrated.urdf", "calibration.yaml", "original.urdf", "config.yaml", "report.json"}) {
+    fs::remove_all(folder_ / "out");
+    fs::copy(folder_ / "whole", folder_ / "out");
+    SCOPED_TRACE(replaced);
+    run_all(0);
+    write(std::string("out/") + replaced, read(std::string("later/") + replaced));
+    run_all(1);
+  }
 }
 
 TEST_F(Recheck, KeepsCopiesOfTheInputUnlessTheyAreTheInput) {

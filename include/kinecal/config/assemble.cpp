@@ -471,9 +471,11 @@ std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> sample
     }
   }
   for (const Reason& reason : refused) {
+    const bool lacks_camera = reason.text.ends_with("has no camera_info");
     diagnostics.errors.push_back(
         reason.first +
-        (reason.count > 1 ? " (and in " + counted(reason.count - 1, "more sample") + ")" : ""));
+        (reason.count > 1 ? " (and in " + counted(reason.count - 1, "more sample") + ")" : "") +
+        (lacks_camera ? "; record it, or give its file: --camera NAME=FILE" : ""));
   }
   if (others > 0) {
     diagnostics.errors.push_back(

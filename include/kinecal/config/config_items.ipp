@@ -57,10 +57,30 @@ inline void require_items(const ConfigMap& map, const ConfigItemKind& kind) {
 using FindConfigItems =
     std::function<std::vector<ConfigItem>(ConfigMap& step, const ConfigItemKind& kind)>;
 
-/// Reports an item with the name of an earlier one in the list.
-[[nodiscard]] inline bool occurs_twice(const std::vector<ConfigItem>& items,
-                                       const std::string& name, const ConfigItemKind& kind,
-                                       const SourceLocation& place, const ConfigMap& step) {
+/// The elements of a list of items; none, and an error, if there are too many to solve for.
+[[nodiscard]] inline std::vector<ConfigEntry> item_elements(ConfigMap& step,
+                                                            const ConfigItemKind& kind) {
+  constexpr std::size_t kMost = 500;
+  std::vector<ConfigEntry> elements = step.list(kind.list);
+  if (elements.size() <= kMost) return elements;
+  step.error(elements[kMost].place, kind.list + " has " + std::to_string(elements.size()) +
+                                        " items, and at most " + std::to_string(kMost) +
+                                        " are read");
+  return {};
+}
+
+/// Reports an item with the name of an earlier one in the list, or one that is too long for the files that
+/// are named after it.
+[[nodiscard]] inline bool is_refused(const std::vector<ConfigItem>& items, const std::string& name,
+                                     const ConfigItemKind& kind, const SourceLocation& place,
+                                     const ConfigMap& step) {
+  constexpr std::size_t kLongestName = 200;
+  if (name.size() > kLongestName) {
+    step.error(place, kind.subject(name.substr(0, kLongestName) + "...") + " has a name of " +
+                          std::to_string(name.size()) + " characters; at most " +
+                          std::to_string(kLongestName) + " are possible");
+    return true;
+  }
   for (const ConfigItem& first : items) {
     if (first.name != name) continue;
     step.error(place, kind.subject(name) + " occurs twice; the first is in line " +
@@ -74,7 +94,7 @@ using FindConfigItems =
 [[nodiscard]] inline std::vector<ConfigItem> find_ros1_items(ConfigMap& step,
                                                              const ConfigItemKind& kind) {
   std::vector<ConfigItem> items;
-  for (const ConfigEntry& element : step.list(kind.list)) {
+  for (const ConfigEntry& element : item_elements(step, kind)) {
     if (!element.value.is_map()) {
       step.error(element.place, kind.list + ": " + describe_config(element.value) +
                                     " is not a map with a name; lists of names are read under "
@@ -83,7 +103,7 @@ using FindConfigItems =
     }
     ConfigMap map(element.value, element.place, kind.noun, step.diagnostics());
     const auto name = map.required_text("name");
-    if (!name || occurs_twice(items, *name, kind, element.place, step)) continue;
+    if (!name || is_refused(items, *name, kind, element.place, step)) continue;
     map.set_subject(kind.subject(*name));
     items.push_back({*name, std::move(map), element.place});
   }
@@ -94,7 +114,7 @@ using FindConfigItems =
 class FindRos2Items {
  public:
   std::vector<ConfigItem> operator()(ConfigMap& step, const ConfigItemKind& kind) {
-    const std::vector<ConfigEntry> elements = step.list(kind.list);
+    const std::vector<ConfigEntry> elements = item_elements(step, kind);
     for (const ConfigEntry& element : elements) {
       if (const auto name = config_text(element.value)) listed_.insert(*name + kind.suffix);
     }
@@ -105,7 +125,7 @@ class FindRos2Items {
         step.error(element.place, kind.list + ": " + describe_config(element.value) +
                                       " is not a name; under ros__parameters a list holds names, "
                                       "and the map of each stands beside the list");
-      } else if (!occurs_twice(items, *name, kind, element.place, step)) {
+      } else if (!is_refused(items, *name, kind, element.place, step)) {
         items.push_back(item(step, kind, *name, element.place));
       }
     }

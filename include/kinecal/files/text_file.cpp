@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "kinecal/files/diagnostics.hpp"
+#include "kinecal/text/characters.hpp"
 
 namespace kinecal::detail {
 
@@ -44,6 +45,9 @@ namespace {
 }  // namespace
 
 std::string read_text_file(const std::string& path) {
+  if (path.find('\n') != std::string::npos) {
+    throw InputError("'" + one_line(path) + "': the name of a file has a line end; rename it");
+  }
   if (is_stream(path)) {
     static std::map<std::string, std::string> read;
     const auto known = read.find(path);

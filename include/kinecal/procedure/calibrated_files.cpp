@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/procedure/calibrated_files.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/residuals_csv.hpp"
 
@@ -30,10 +34,13 @@ namespace {
 }  // namespace detail
 
 std::vector<OutputFile> calibrated_files(const CalibratedRobot& calibrated,
-                                         ResultFileOptions options) {
+                                         ResultFileOptions options,
+                                         std::vector<OutputFile> others) {
   std::vector<OutputFile> files = detail::robot_files_of(calibrated, std::move(options));
-  files.push_back({"report.json", json_report(calibrated)});
+  std::move(others.begin(), others.end(), std::back_inserter(files));
+  OutputFile report{"report.json", json_report(calibrated, files)};
   files.push_back({"residuals.csv", residuals_csv(calibrated.setup.calibration, calibrated)});
+  files.push_back(std::move(report));
   return files;
 }
 

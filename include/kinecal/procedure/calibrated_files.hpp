@@ -11,10 +11,13 @@
 
 namespace kinecal {
 
-/// All files of a calibration: calibrated.urdf first, then calibration.yaml, cameras, report.json and residuals.csv.
+/// All files of a calibration: calibrated.urdf first, then calibration.yaml, cameras, the others, residuals.csv, and report.json, which has
+/// the checksums of the files that are read again.  Written in this order, a folder is known to be whole.
+/// @param others  further files of the folder that are read again: copies of the inputs
 /// @throws InputError  if the setup has no URDF text, or it cannot hold the result
 [[nodiscard]] std::vector<OutputFile> calibrated_files(const CalibratedRobot& calibrated,
-                                                       ResultFileOptions options = {});
+                                                       ResultFileOptions options = {},
+                                                       std::vector<OutputFile> others = {});
 
 /// The calibrated URDF: the setup's, with the result.
 /// @throws InputError  if the setup has no URDF text, or it cannot hold the result

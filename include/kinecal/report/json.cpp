@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
+#include "kinecal/files/checksum.hpp"
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/json_state.ipp"
 #include "kinecal/trust/assess.hpp"
@@ -209,7 +210,7 @@ template <class Number>
 
 }  // namespace detail
 
-std::string json_report(const Findings& findings) {
+std::string json_report(const Findings& findings, std::span<const OutputFile> files) {
   using detail::json_list;
   const auto write = [](const auto& item) { return detail::json(item); };
   const CalibrationResult& result = findings.result;
@@ -232,11 +233,15 @@ std::string json_report(const Findings& findings) {
   const auto file = [](const auto& of) {
     return detail::Json{{"role", of.first}, {"name", of.second}};
   };
+  const auto checksum = [](const OutputFile& of) {
+    return detail::Json{{"name", of.name}, {"sha256", sha256_text(of.content)}};
+  };
   const detail::Json report = {
       {"format", kReportFormat},
       {"version", findings.call.version},
       {"robot", findings.robot},
       {"inputs", json_list(findings.call.files, file)},
+      {"files", json_list(files, checksum)},
       {"verdict", to_string(findings.judgement.verdict)},
       {"reasons", findings.judgement.reasons},
       {"samples", findings.used_count()},

@@ -43,6 +43,16 @@ TEST_F(FileSet, KeepsFilesThatAppearMeanwhileIfItIsToKeepThem) {
   EXPECT_EQ(count(), 2);
 }
 
+TEST_F(FileSet, ASingleFileThatAppearsMeanwhileIsKeptToo) {
+  const std::string file = folder_ / "report.html";
+  write("report.html", "of somebody");
+  EXPECT_THROW(write_text_file(file, "1", Existing::kept), OutputError);
+  EXPECT_EQ(read("report.html"), "of somebody");
+  write_text_file(file, "2");
+  EXPECT_EQ(read("report.html"), "2");
+  EXPECT_EQ(count(), 1);
+}
+
 TEST_F(FileSet, SweepsTheFoldersOfRunsThatWereKilled) {
   for (const char* name : {".kinecal-abc123", ".kinecal-def456"}) {
     fs::create_directory(folder_ / name);

@@ -55,6 +55,50 @@ std::string refusal(const std::string& text) {
   return message;
 }
 
+/// A robot of so many joints, each below the one before or all at the base.
+std::string robot_of(int joints, bool in_a_row) {
+  std::string text = "<robot name=\"r\">\n<link name=\"l0\"/>\n";
+  for (int i = 1; i <= joints; ++i) {
+    const std::string number = std::to_string(i);
+    text += "<link name=\"l" + number + "\"/><joint name=\"j" + number +
+            "\" type=\"revolute\"><parent link=\"l" + (in_a_row ? std::to_string(i - 1) : "0") +
+            "\"/><child link=\"l" + number +
+            "\"/><axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" "
+            "velocity=\"1\"/></joint>\n";
+  }
+  return text + "</robot>\n";
+}
+
+TEST(ReadUrdf, MoreThanARobotHasIsRefusedAtOnce) {
+  EXPECT_EQ(parse_urdf(robot_of(500, true), "arm.urdf").joints().size(), 500U);
+  EXPECT_EQ(parse_urdf(robot_of(5000, false), "arm.urdf").joints().size(), 5000U);
+  EXPECT_EQ(refusal(robot_of(501, true)),
+            "arm.urdf:503: joint 'j501' is below more than 500 others, which is the most that is "
+            "read");
+  EXPECT_EQ(refusal(robot_of(100'000, true)),
+            "arm.urdf:5003: the robot has more than 5000 joints, which is the most that is read");
+  std::string attributes;
+  for (int i = 0; i <= 1000; ++i) attributes += " a" + std::to_string(i) + "=\"1\"";
+  EXPECT_EQ(refusal(robot_with("<gazebo" + attributes + "/>")),
+            "arm.urdf:6: <gazebo> has more than 1000 attributes");
+  std::string mimics = robot_of(22, false);
+  for (int i = 2; i <= 22; ++i) {
+    const std::string name = "\"j" + std::to_string(i) + "\" type=\"revolute\">";
+    mimics.insert(mimics.find(name) + name.size(),
+                  "<mimic joint=\"j" + std::to_string(i - 1) + "\"/>");
+  }
+  EXPECT_EQ(refusal(mimics), "arm.urdf:24: joint 'j22' mimics through more than 20 others");
+  std::string deep, ends;
+  for (int i = 0; i < 60'000; ++i) deep += "<a>", ends += "</a>";
+  EXPECT_EQ(refusal(robot_with("<gazebo>\n" + deep + ends + "</gazebo>")),
+            "arm.urdf:7: elements are nested too deeply");
+  const std::string name(201, 'x');
+  EXPECT_THAT(refusal(robot_with("<joint name=\"" + name + "\" type=\"continuous\">" + kLinks +
+                                 "</joint>")),
+              AllOf(StartsWith("arm.urdf:6: the name 'xxx"),
+                    HasSubstr("...' has 201 characters; at most 200 are possible")));
+}
+
 TEST(ReadUrdf, TransfersWhatTheJointSays) {
   const Robot robot =
       parse_urdf(elbow("<origin xyz=\"0.1 -2e-3 +3\" rpy=\"0.3 -0.2 0.1\"/><parent link=\"upper\"/>"

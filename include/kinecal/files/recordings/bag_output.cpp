@@ -64,7 +64,7 @@ class BagFile {
     write(written, time, encode(message, definition->second, encoding_));
   }
 
-  void finish() {
+  void finish(Existing existing) {
     with_path([&] {
       std::visit(
           [](auto& writer) {
@@ -75,7 +75,7 @@ class BagFile {
     errno = 0;
     file_.close();
     if (!file_) throw OutputError(path_.string() + ": cannot be written to its end" + reason());
-    rename_file(staging_.path() / path_.filename(), path_);
+    place_file(staging_.path() / path_.filename(), path_, existing);
   }
 
  private:
@@ -141,8 +141,8 @@ void BagOutput::write(const BagTopic& topic, std::int64_t time, const MessageFie
   file_->write(topic, time, message);
 }
 
-void BagOutput::finish() {
-  file_->finish();
+void BagOutput::finish(Existing existing) {
+  file_->finish(existing);
 }
 
 }  // namespace kinecal

@@ -11,6 +11,7 @@
 #include "kinecal/files/bags/bag.hpp"
 #include "kinecal/files/bags/codec/compression.hpp"
 #include "kinecal/files/messages/value.hpp"
+#include "kinecal/files/results/output_file.hpp"
 
 namespace kinecal {
 
@@ -40,8 +41,8 @@ class BagOutput {
   void write(const BagTopic& topic, std::int64_t time, const MessageFields& message);
 
   /// Gives the bag its name.
-  /// @throws OutputError  if the bag cannot be completed, as on a full disk
-  void finish();
+  /// @throws OutputError  if the bag cannot be completed, as on a full disk, or a file is there and kept
+  void finish(Existing existing = Existing::replaced);
 
  private:
   Encoding encoding_;

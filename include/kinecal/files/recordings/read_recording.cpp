@@ -12,12 +12,43 @@
 #include "kinecal/files/recordings/message_decoder.ipp"
 #include "kinecal/files/recordings/message_samples.ipp"
 #include "kinecal/samples/joint_moves.hpp"
+#include "kinecal/text/characters.hpp"
 
 namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Reports a name with a line end, which would begin a line of what is printed.
+void check_names(const std::vector<Sample>& samples, Diagnostics& diagnostics) {
+  for (const Sample& sample : samples) {
+    const auto has_line_end = [&](const std::string& name) {
+      if (name.find('\n') == std::string::npos) return false;
+      diagnostics.error({sample.source, 0}, "the name '" + one_line(name) + "' has a line end");
+      return true;
+    };
+    for (const std::string& joint : sample.joint_names) {
+      if (has_line_end(joint)) return;
+    }
+    for (const auto& [joint, pose] : sample.poses) {
+      if (has_line_end(joint)) return;
+    }
+    for (const Observation& seen : sample.observations) {
+      if (has_line_end(seen.sensor)) return;
+      for (const Feature& feature : seen.features) {
+        if (has_line_end(feature.frame)) return;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace detail
 
 Recording read_recording(const std::string& path, Diagnostics& diagnostics, unsigned threads,
                          const ProgressMeter& meter) {
   Recording recording = read_as_recorded(path, diagnostics, threads, meter);
+  detail::check_names(recording.samples, diagnostics);
   set_joint_moves(recording.samples);
   set_joint_velocities(recording.samples);
   return recording;
@@ -25,6 +56,9 @@ Recording read_recording(const std::string& path, Diagnostics& diagnostics, unsi
 
 Recording read_as_recorded(const std::string& path, Diagnostics& diagnostics, unsigned threads,
                            const ProgressMeter& meter) {
+  if (path.find('\n') != std::string::npos) {  // places of samples begin with it
+    throw InputError("'" + detail::one_line(path) + "': the name of a file has a line end");
+  }
   if (is_hand_eye_samples(path)) return {read_hand_eye_samples(path, {}, diagnostics), {}};
   if (is_csv_table(path)) return {read_csv_by_columns_beside(path, diagnostics), {}};
   if (recording_format(path) == RecordingFormat::yaml) {

@@ -24,19 +24,19 @@ std::optional<Encoding> output_encoding(const std::string& path) {
 }
 
 void write_recording(const std::string& path, const std::vector<Sample>& samples,
-                     const std::string& urdf) {
+                     const std::string& urdf, Existing existing) {
   const std::optional<Encoding> encoding = output_encoding(path);
   if (!encoding) {
     std::ostringstream text;
     write_samples(text, samples);
-    return write_text_file(path, text.str());
+    return write_text_file(path, text.str(), existing);
   }
   const OutputFolder folder(folder_of(path));  // creates it if it is missing
   BagOutput bag(path, *encoding,
                 *encoding == Encoding::cdr ? best_mcap_compression() : Compression::none);
   if (!urdf.empty()) write_urdf(bag, urdf);
   write_samples(bag, samples);
-  bag.finish();
+  bag.finish(existing);
 }
 
 }  // namespace kinecal

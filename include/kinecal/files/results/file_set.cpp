@@ -5,9 +5,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/files/results/file_set.hpp"
 
-#include <unistd.h>
-
-#include <cerrno>
 #include <deque>
 #include <filesystem>
 #include <map>
@@ -18,6 +15,7 @@
 
 #include "kinecal/files/results/staging.hpp"
 #include "kinecal/files/results/standard_output.hpp"
+#include "kinecal/text/characters.hpp"
 
 namespace kinecal {
 
@@ -41,17 +39,6 @@ void keep_file(const std::filesystem::path& file, const std::filesystem::path& k
   std::filesystem::create_hard_link(file, kept, error);
   if (error) std::filesystem::copy_file(file, kept, error);  // a file system without links
   if (error) throw OutputError(file.string() + ": cannot be kept: " + error.message());
-}
-
-/// Gives a file its name, unless another has it.
-void place_new(const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (::link(from.c_str(), to.c_str()) == 0) return;
-  if (errno == EEXIST) {
-    throw OutputError(to.string() +
-                      ": has appeared meanwhile and is kept; use --force to replace it, "
-                      "or choose another name");
-  }
-  rename_file(from, to);  // a file system without links
 }
 
 void put_back(const std::filesystem::path& kept, const std::filesystem::path& file) {
@@ -80,12 +67,8 @@ class StagedFiles {
   /// @throws OutputError  some files may then have their names: put_back()
   void place(Existing existing) {
     for (const std::string& name : names_) {
-      if (existing == Existing::kept) {
-        place_new(staging_ / name, folder_ / name);
-      } else {
-        keep_file(folder_ / name, staging_ / (name + kBefore));
-        rename_file(staging_ / name, folder_ / name);
-      }
+      if (existing == Existing::replaced) keep_file(folder_ / name, staging_ / (name + kBefore));
+      place_file(staging_ / name, folder_ / name, existing);
       placed_.push_back(name);
     }
   }
@@ -105,6 +88,9 @@ class StagedFiles {
 }  // namespace detail
 
 OutputFolder::OutputFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+  if (const std::string name = folder_.string(); name.find('\n') != std::string::npos) {
+    throw OutputError("'" + detail::one_line(name) + "': the name of a folder has a line end");
+  }
   const detail::StagingFolder can_be_written = stage();
 }
 
@@ -187,9 +173,10 @@ std::filesystem::path folder_of(const std::string& file) {
   return path.has_parent_path() ? path.parent_path() : ".";
 }
 
-void write_text_file(const std::string& file, const std::string& content) {
+void write_text_file(const std::string& file, const std::string& content, Existing existing) {
   if (is_standard_output(file)) return write_standard_output(content);
-  OutputFolder(folder_of(file)).write({{std::filesystem::path(file).filename().string(), content}});
+  OutputFolder(folder_of(file))
+      .write({{std::filesystem::path(file).filename().string(), content}}, existing);
 }
 
 }  // namespace kinecal

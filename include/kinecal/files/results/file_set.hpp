@@ -14,12 +14,6 @@ namespace detail {
 class StagingFolder;
 }  // namespace detail
 
-/// What becomes of a file of the same name.
-enum class Existing {
-  replaced,
-  kept  ///< it is an error, also if the file appears while others are written
-};
-
 /// A folder for a set of files.  The constructor checks that it is writable, before any work is
 /// done, and creates it if it is missing.
 class OutputFolder {
@@ -63,6 +57,7 @@ void write_file_sets(const std::vector<FileSet>& sets);
 
 /// Writes a file whole or not at all, and creates its folder if it is missing; "-" is the standard output.
 /// @throws OutputError  naming the file
-void write_text_file(const std::string& file, const std::string& content);
+void write_text_file(const std::string& file, const std::string& content,
+                     Existing existing = Existing::replaced);
 
 }  // namespace kinecal

@@ -12,6 +12,12 @@ struct OutputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What becomes of a file of the same name.
+enum class Existing {
+  replaced,
+  kept  ///< it is an error, also if the file appears while others are written
+};
+
 /// A file to write.
 struct OutputFile {
   std::string name;     ///< in its folder

@@ -96,6 +96,18 @@ bool StagingFolder::make(const std::filesystem::path& folder) {
   return exists;
 }
 
+void place_file(const std::filesystem::path& from, const std::filesystem::path& to,
+                Existing existing) {
+  if (existing == Existing::replaced) return rename_file(from, to);
+  if (::link(from.c_str(), to.c_str()) == 0) return;
+  if (errno == EEXIST || std::filesystem::exists(std::filesystem::symlink_status(to))) {
+    throw OutputError(to.string() +
+                      ": has appeared meanwhile and is kept; use --force to replace it, "
+                      "or choose another name");
+  }
+  rename_file(from, to);  // a file system without links
+}
+
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {
   if (::rename(from.c_str(), to.c_str()) != 0) throw_output_error(to, "cannot be written");
 }

@@ -57,6 +57,11 @@ class StagingFolder {
   int lock_ = -1;
 };
 
+/// Gives a file its name.
+/// @throws OutputError  if another has it that is to be kept
+void place_file(const std::filesystem::path& from, const std::filesystem::path& to,
+                Existing existing);
+
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
 
 }  // namespace kinecal::detail

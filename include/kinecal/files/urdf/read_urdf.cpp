@@ -158,6 +158,12 @@ void check_urdf_joint(const UrdfText& source, pugi::xml_node joint, Diagnostics&
   for (const std::string& text :
        {name, std::string(joint.child("parent").attribute("link").value()),
         std::string(joint.child("child").attribute("link").value())}) {
+    constexpr std::size_t kLongest = 200;  // files are named after it
+    if (text.size() > kLongest) {
+      diagnostics.error(place, "the name '" + one_line(text.substr(0, kLongest)) + "...' has " +
+                                   std::to_string(text.size()) + " characters; at most " +
+                                   std::to_string(kLongest) + " are possible");
+    }
     if (!has_control_characters(text)) continue;
     diagnostics.error(place, "the name '" + one_line(text) + "' has a control character");
   }
@@ -168,12 +174,31 @@ void check_urdf_joint(const UrdfText& source, pugi::xml_node joint, Diagnostics&
   if (has_axis) (void)source.vector(joint.child("axis"), "xyz", diagnostics);
 }
 
+/// Reports a joint that mimics another through many.  A circle of them is no error: see mimics_a_joint().
+void check_urdf_mimic(const UrdfText& source, pugi::xml_node joint, Diagnostics& diagnostics) {
+  constexpr std::size_t kMost = 20;
+  std::set<std::string> before;
+  for (pugi::xml_node next = joint; next.child("mimic");
+       next = source.joint(next.child("mimic").attribute("joint").value())) {
+    if (!before.insert(next.attribute("name").value()).second) return;
+    if (before.size() <= kMost) continue;
+    return diagnostics.error(source.place(joint),
+                             std::string("joint '") + joint.attribute("name").value() +
+                                 "' mimics through more than " + std::to_string(kMost) + " others");
+  }
+}
+
 /// The robot with these joints, which must be a tree.
 /// @throws InputError  if the joints are not a robot, or not a tree
 [[nodiscard]] Robot make_urdf_robot(const UrdfText& source, std::vector<Joint> joints) {
   try {
     Robot robot(source.robot().attribute("name").value(), std::move(joints));
-    for (const Joint& joint : robot.joints()) (void)joints_to_root(robot, joint.child);
+    constexpr std::size_t kLongestChain = 500;
+    for (const Joint& joint : robot.joints()) {
+      if (joints_to_root(robot, joint.child).size() <= kLongestChain) continue;
+      throw RobotError("joint '" + joint.name + "' is below more than " +
+                       std::to_string(kLongestChain) + " others, which is the most that is read");
+    }
     return robot;
   } catch (const RobotError& e) {
     Diagnostics diagnostics;
@@ -209,6 +234,7 @@ void check_urdf_joints(const UrdfText& source) {
   std::vector<Joint> joints;
   for (pugi::xml_node node : source.robot().children("joint")) {
     check_urdf_joint(source, node, diagnostics);
+    check_urdf_mimic(source, node, diagnostics);
     Joint joint;
     joint.name = node.attribute("name").value();
     joint.parent = node.child("parent").attribute("link").value();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
@@ -20,16 +21,27 @@ namespace kinecal::detail {
 class UrdfText : public XmlText {
  public:
   /// @param file  name of the file for messages
-  /// @throws InputError  if the text is empty, not XML, not UTF-8 or its root is not <robot>
+  /// @throws InputError  if the text is empty, not XML, not UTF-8, its root is not <robot>, or it has
+  ///                     too many joints
   UrdfText(std::string text, std::string file)
-      : XmlText(std::move(text), std::move(file), {"a URDF", "robot"}) {}
+      : XmlText(std::move(text), std::move(file), {"a URDF", "robot"}) {
+    constexpr std::size_t kMostJoints = 5000;  // robots have hundreds
+    std::size_t count = 0;
+    for (const pugi::xml_node node : robot().children("joint")) {
+      joints_.emplace(node.attribute("name").value(), node);
+      if (++count <= kMostJoints) continue;
+      throw InputError(place(node).str() + ": the robot has more than " +
+                       std::to_string(kMostJoints) + " joints, which is the most that is read");
+    }
+  }
 
   [[nodiscard]] pugi::xml_node robot() const { return root(); }
 
   /// The joint of that name among the children of <robot>, not in <transmission> or <gazebo>; a
   /// null node if there is no such joint.
   [[nodiscard]] pugi::xml_node joint(const std::string& name) const {
-    return robot().find_child_by_attribute("joint", "name", name.c_str());
+    const auto found = joints_.find(name);
+    return found == joints_.end() ? pugi::xml_node() : found->second;
   }
 
   /// Location of the first joint, or else of the first link, that a message names in '' or [].
@@ -85,6 +97,9 @@ class UrdfText : public XmlText {
     }
     diagnostics.throw_if_errors();
   }
+
+ private:
+  std::map<std::string, pugi::xml_node> joints_;  ///< by name; the first of each
 };
 
 }  // namespace kinecal::detail

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
@@ -31,6 +32,9 @@ struct XacroRemnant {
 class XacroRemnants {
  public:
   explicit XacroRemnants(pugi::xml_node robot) : robot_(robot) {
+    for (const pugi::xml_node child : robot.children()) {
+      if (xacro_name(child) == "macro") macros_.emplace(child.attribute("name").value(), child);
+    }
     add_expressions(robot, false);
     for (const pugi::xml_node child : robot.children()) visit(child, Place::robot);
   }
@@ -65,11 +69,8 @@ class XacroRemnants {
     const std::string_view name = xacro_name(element);
     if (is_definition(name)) return false;
     if (name == "if" || name == "unless") return holds_links(element, in_macro);
-    const auto is_called = [&](pugi::xml_node macro) {
-      return xacro_name(macro) == "macro" && macro.attribute("name").value() == name;
-    };
-    const pugi::xml_node macro = in_macro ? pugi::xml_node() : robot_.find_child(is_called);
-    return !macro || holds_links(macro, true);
+    const auto macro = in_macro ? macros_.end() : macros_.find(name);
+    return macro == macros_.end() || holds_links(macro->second, true);
   }
 
   [[nodiscard]] bool holds_links(pugi::xml_node element, bool in_macro) const {
@@ -119,6 +120,7 @@ class XacroRemnants {
   }
 
   pugi::xml_node robot_, joint_;
+  std::map<std::string_view, pugi::xml_node> macros_;  ///< that the robot defines, by name
   std::vector<XacroRemnant> all_;
 };
 

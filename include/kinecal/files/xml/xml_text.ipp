@@ -8,10 +8,12 @@
 #pragma once
 
 #include <algorithm>
+#include <iterator>
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/xml/xml_edit.ipp"
@@ -26,7 +28,7 @@ struct XmlKind {
 class XmlText {
  public:
   /// @param file  name of the file for messages
-  /// @throws InputError  if the text is empty, not XML, not UTF-8, nested too deeply or has another root
+  /// @throws InputError  if the text is empty, not XML, not UTF-8, nested too deeply, has too many attributes or another root
   XmlText(std::string text, std::string file, const XmlKind& kind)
       : text_(std::move(text)), file_(std::move(file)) {
     if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
@@ -36,6 +38,10 @@ class XmlText {
       throw InputError(file_ + ": the file is empty; " + kind.what + " has a <" + kind.root +
                        "> element");
     }
+    for (std::size_t at = text_.find('\n'); at != std::string::npos;
+         at = text_.find('\n', at + 1)) {
+      line_ends_.push_back(at);
+    }
     const pugi::xml_parse_result result = document_.load_buffer(
         text_.data(), text_.size(), pugi::parse_default | pugi::parse_wnorm_attribute,
         pugi::encoding_utf8);
@@ -43,7 +49,7 @@ class XmlText {
       const SourceLocation place{file_, line(static_cast<std::size_t>(result.offset))};
       throw InputError(place.str() + ": malformed XML: " + result.description());
     }
-    check_depth();
+    check_size();
     if (root().name() != kind.root) {
       throw InputError(place(root()).str() + ": the root element is <" + root().name() + ">; " +
                        kind.what + " begins with <" + kind.root + ">");
@@ -65,28 +71,36 @@ class XmlText {
   }
 
  private:
-  /// Readers of the same text, such as urdfdom, take an element inside another by recursion.
-  void check_depth() {
+  /// Readers of the same text, such as urdfdom, take an element inside another by recursion, and compare
+  /// each attribute of an element with all others.
+  void check_size() {
     struct Walker : pugi::xml_tree_walker {
       bool for_each(pugi::xml_node& node) override {
         constexpr int kDeepest = 200;
-        if (depth() < kDeepest) return true;
-        too_deep = node;
-        return false;
+        constexpr std::ptrdiff_t kMostAttributes = 1000;
+        const auto attributes = node.attributes();
+        if (depth() >= kDeepest) wrong = "elements are nested too deeply";
+        if (std::distance(attributes.begin(), attributes.end()) > kMostAttributes) {
+          wrong = std::string("<") + node.name() + "> has more than 1000 attributes";
+        }
+        element = node;
+        return wrong.empty();
       }
-      pugi::xml_node too_deep;
+      pugi::xml_node element;
+      std::string wrong;
     } walker;
     if (!document_.traverse(walker)) {
-      throw InputError(place(walker.too_deep).str() + ": elements are nested too deeply");
+      throw InputError(place(walker.element).str() + ": " + walker.wrong);
     }
   }
 
   [[nodiscard]] int line(std::size_t offset) const {
-    const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text_.size()));
-    return 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));
+    const auto end = std::lower_bound(line_ends_.begin(), line_ends_.end(), offset);
+    return 1 + static_cast<int>(end - line_ends_.begin());
   }
 
   std::string text_, file_;
+  std::vector<std::size_t> line_ends_;  ///< positions of '\n'
   pugi::xml_document document_;
 };
 

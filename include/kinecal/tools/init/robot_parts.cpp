@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <initializer_list>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -25,23 +26,44 @@ namespace {
   return moves(joint.type) && !joint.mimic;
 }
 
-/// Number of driven joints that lead only to this link: below the last fork to other driven joints.
-[[nodiscard]] std::size_t own_joints(const Robot& robot, const std::string& link) {
-  const std::vector<const Joint*> way = joints_to_root(robot, link);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    if (is_driven(*way[i])) ++count;
-    for (const Joint& other : robot.joints()) {
-      // A head or a second arm, not a wheel: two driven joints in a row.
-      if (!is_driven(other)) continue;
-      const std::vector<const Joint*> beside = joints_to_root(robot, other.child);
-      const auto fork = std::find_if(beside.begin(), beside.end(),
-                                     [&](const Joint* j) { return j->parent == way[i]->parent; });
-      if (fork == beside.end() || *fork == way[i]) continue;
-      const auto driven =
-          std::count_if(beside.begin(), fork + 1, [](const Joint* j) { return is_driven(*j); });
-      if (driven >= 2) return count;
+/// The joints below each link, and how many driven joints are in a row from each on.
+class Branches {
+ public:
+  explicit Branches(const Robot& robot) {
+    for (const Joint& joint : robot.joints()) {
+      below_[joint.parent].push_back(&joint);
+      if (!is_driven(joint)) continue;
+      std::size_t count = 0;
+      for (const Joint* above : joints_to_root(robot, joint.child)) {
+        if (is_driven(*above)) ++count;
+        std::size_t& most = driven_[above];
+        most = std::max(most, count);
+      }
     }
+  }
+
+  /// True if another branch than a joint's begins at its parent link, of a head or a second arm, not a wheel: with
+  /// two driven joints in a row.
+  [[nodiscard]] bool has_other(const Joint& joint) const {
+    const auto& beside = below_.at(joint.parent);
+    return std::any_of(beside.begin(), beside.end(), [&](const Joint* other) {
+      const auto driven = driven_.find(other);
+      return other != &joint && driven != driven_.end() && driven->second >= 2;
+    });
+  }
+
+ private:
+  std::map<std::string, std::vector<const Joint*>> below_;
+  std::map<const Joint*, std::size_t> driven_;
+};
+
+/// Number of driven joints that lead only to this link: below the last fork to other driven joints.
+[[nodiscard]] std::size_t own_joints(const Robot& robot, const Branches& branches,
+                                     const std::string& link) {
+  std::size_t count = 0;
+  for (const Joint* joint : joints_to_root(robot, link)) {
+    if (is_driven(*joint)) ++count;
+    if (branches.has_other(*joint)) return count;
   }
   return count;
 }
@@ -101,13 +123,14 @@ namespace {
 
 std::vector<std::string> propose_arms(const Robot& robot) {
   constexpr std::size_t kLeast = 3;  // a pan-tilt head has two
+  const detail::Branches branches(robot);
   std::set<std::string> parents;
   for (const Joint& joint : robot.joints()) parents.insert(joint.parent);
   std::vector<std::pair<std::size_t, std::string>> ends;
   for (const Joint& joint : robot.joints()) {
     if (parents.contains(joint.child) || detail::is_on_a_wheel(robot, joint.child)) continue;
     const std::string end = detail::end_of_arm(robot, joint.child);
-    const std::size_t own = detail::own_joints(robot, end);
+    const std::size_t own = detail::own_joints(robot, branches, end);
     const auto same = [&](const auto& known) { return known.second == end; };
     if (own < kLeast || std::any_of(ends.begin(), ends.end(), same)) continue;
     ends.emplace_back(own, end);

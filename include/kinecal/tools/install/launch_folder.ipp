@@ -160,7 +160,13 @@ class LaunchFolder {
     for (const auto& entry : fs::directory_iterator(absolute, error)) {
       others.push_back(entry.path().filename().string());
     }
-    throw InputError((folder / launch).string() + ": is not there" + did_you_mean(launch, others));
+    const std::string meant = did_you_mean(launch, others);
+    throw InputError((folder / launch).string() + ": is not there" +
+                     (meant.empty() ? "; give its name with --launch.  A robot without a launch "
+                                      "file of ROS 1 needs no installation: give calibrated.urdf "
+                                      "to robot_state_publisher (ROS 2), or the file of "
+                                      "'calibrate --kinematics' to the driver (UR)"
+                                    : meant));
   }
 
   /// True if a file exists with other content.

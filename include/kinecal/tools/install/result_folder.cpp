@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -11,7 +12,9 @@
 #include <vector>
 
 #include "kinecal/files/cameras/read_camera_file.hpp"
+#include "kinecal/files/checksum.hpp"
 #include "kinecal/files/json/json_value.hpp"
+#include "kinecal/files/results/result_files.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/files/yaml/config_scalar.hpp"
@@ -86,12 +89,41 @@ namespace {
   return name != nullptr ? name->text : std::string();
 }
 
+/// Checks that the files are those of the report: a run that is killed while it replaces them leaves some of
+/// each.  A report of an older version has no checksums.
+/// @throws InputError  if one is of another run, or was changed
+void check_is_whole(const std::filesystem::path& folder, const JsonValue& report,
+                    const ResultFolder& result) {
+  if (!report.find("files")) return;
+  std::map<std::string, std::string> checksums;
+  for (const JsonValue& file : report.list("files")) {
+    checksums.emplace(file.text("name"), file.text("sha256"));
+  }
+  if (checksums.empty()) return;
+  const auto check = [&](const std::string& name, const std::string& content) {
+    const auto of = checksums.find(name);
+    if (of != checksums.end() && of->second == sha256_text(content)) return;
+    throw InputError((folder / name).string() +
+                     ": is not the file that report.json was written with: a run was interrupted "
+                     "while it replaced the results, or the file was changed; calibrate again");
+  };
+  for (const char* copy : {kOriginalUrdf, kConfigCopy}) {
+    if (checksums.contains(copy) && std::filesystem::is_regular_file(folder / copy)) {
+      check(copy, read_text_file(folder / copy));
+    }
+  }
+  check(result.values.name, result.values.content);
+  check(result.urdf.name, result.urdf.content);
+  for (const ResultCamera& camera : result.cameras) check(camera.file.name, camera.file.content);
+}
+
 /// Reads whether the calibration converged, and the first reason against using it.
 void read_report(const std::filesystem::path& report, ResultFolder& result) {
   if (!std::filesystem::exists(report)) return;
   result.report = {report.filename().string(), read_text_file(report)};
   try {
     const JsonValue file = JsonValue::parse(result.report.content);
+    check_is_whole(report.parent_path(), file, result);
     if (!file.find("converged")) throw JsonError("does not say whether the result converged");
     result.converged = file.flag("converged");
     if (file.text_or("verdict", {}) != "do not use") return;
