@@ -9,6 +9,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -191,6 +192,7 @@ struct TriedLens {
   std::vector<double> squares =
       {};                       ///< mean bounded_square() of each sample, held out; 0: no features
   double error = 0.0;           ///< root of that of all features, pixels
+  double fitted = 0.0;          ///< typical distance of all features from the fit, pixels
   double known = HUGE_VAL;      ///< +- of a pixel where features are, pixels
   bool has_focal = true;        ///< false: samples do not determine the focal length at the axis
   bool is_traded = false;       ///< fx is not known; what it and coefficients make together is
@@ -356,6 +358,9 @@ void calibrate_lens(const Robot& robot, const ModelConfig& camera, TriedLens& le
     lens.fault = fmt::format("folds over {:.0f} px from the center", folds.front().radius);
     return;
   }
+  for (const BlockStatistics& block : result.blocks) {
+    if (block.unit == "px") lens.fitted = std::max(lens.fitted, block.after.median);
+  }
   set_known(last, values, camera.name, lens);
   if (!lens.has_focal || !std::isfinite(lens.known)) {
     lens.fault = lens.has_focal ? "samples do not determine its pixels"
@@ -393,6 +398,48 @@ void try_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
   }
 }
 
+/// Tries each lens with all of its coefficients; then with fewer, unless it does not fit even with more.
+/// @param alone  without_others()
+/// @returns  in the order of kLenses
+[[nodiscard]] std::vector<TriedLens> tried_lenses(const Config& alone, const Robot& robot,
+                                                  const ModelConfig& camera,
+                                                  const std::vector<Sample>& samples) {
+  constexpr double kHopeless = 1.5;
+  std::array<std::optional<TriedLens>, kLenses.size()> tried;
+  std::map<std::string_view, std::vector<Sample>> begun_with;
+  double least = HUGE_VAL;
+  const auto attempt = [&](std::size_t i) {
+    const LensForm& form = kLenses[i];
+    if (!begun_with.contains(form.name)) {
+      begun_with.emplace(form.name, begun(alone, robot, camera, form.name, samples));
+    }
+    tried[i] = TriedLens{form, with_lens(alone, camera, form), begun_with.at(form.name)};
+    try_lens(robot, camera, *tried[i]);
+    if (tried[i]->fault.empty()) least = std::min(least, tried[i]->error);
+  };
+  // The form with the next coefficients; the size if this one has all.
+  const auto larger = [](std::size_t i) {
+    const auto begin = kLenses.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto next = std::find_if(begin + 1, kLenses.end(),
+                                   [&](const LensForm& form) { return form.name == begin->name; });
+    return static_cast<std::size_t>(next - kLenses.begin());
+  };
+  for (std::size_t i = 0; i < kLenses.size(); ++i) {
+    if (larger(i) == kLenses.size()) attempt(i);
+  }
+  for (std::size_t i = kLenses.size(); i-- > 0;) {
+    const std::size_t next = larger(i);
+    if (next == kLenses.size() || !tried[next]) continue;
+    const bool is_hopeless = tried[next]->fitted > kHopeless * least;
+    if (!is_hopeless) attempt(i);
+  }
+  std::vector<TriedLens> all;
+  for (std::optional<TriedLens>& lens : tried) {
+    if (lens) all.push_back(*std::move(lens));
+  }
+  return all;
+}
+
 /// The first lens that no other one beats; of those that are known, if there are any; nullptr if none fits.
 [[nodiscard]] const TriedLens* best_of(const std::vector<TriedLens>& tried) {
   for (const bool known : {true, false}) {
@@ -417,16 +464,9 @@ void find_lenses(Config& config, const Robot& robot, std::vector<Sample>& sample
   const Config given = config;
   for (const ModelConfig& camera : detail::models_of(given)) {
     if (camera.lens != kAnyLens) continue;
-    std::vector<detail::TriedLens> tried;
     const Config alone = detail::without_others(given, robot, camera);
-    std::map<std::string_view, std::vector<Sample>> begun;
-    for (const detail::LensForm& form : detail::kLenses) {
-      if (!begun.contains(form.name)) {
-        begun.emplace(form.name, detail::begun(alone, robot, camera, form.name, samples));
-      }
-      tried.push_back({form, detail::with_lens(alone, camera, form), begun.at(form.name)});
-      detail::try_lens(robot, camera, tried.back());
-    }
+    const std::vector<detail::TriedLens> tried =
+        detail::tried_lenses(alone, robot, camera, samples);
     const detail::TriedLens* best = detail::best_of(tried);
     if (best == nullptr) {
       detail::report_faults(camera, tried, diagnostics);
