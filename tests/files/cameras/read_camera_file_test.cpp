@@ -572,7 +572,8 @@ TEST_F(CameraFile, ReadsOpencvXml) {
   EXPECT_EQ(camera.width, 640);
   EXPECT_EQ(camera.height, 480);
   EXPECT_EQ(camera.distortion_model, "plumb_bob");
-  EXPECT_THAT(refusal(replaced(xml, "240.75 0.", "240.75 x")), HasSubstr("c.yaml:10: camera_matrix: 'x' is not"));
+  EXPECT_THAT(refusal(replaced(xml, "240.75 0.", "240.75 x")),
+              HasSubstr("c.yaml:10: camera_matrix: 'x' is not"));
   EXPECT_THAT(refusal(replaced(xml, "</opencv_storage>", "")),
               HasSubstr("c.yaml:18: malformed XML"));
   EXPECT_THAT(refusal("<robot name='a'/>"),

@@ -6,8 +6,8 @@
 // rational_polynomial and thin_prism.
 //
 // For each of five folds a lens is fitted to the other samples, and the pose of each sample that was held out to the sample.
-// The first lens is taken that no other one beats: by more than 1 % in pixels, and beyond chance, by Student's t at 1 % of
-// the mean squares of samples, or of their logarithms.  Pixels decide, not coefficients: these are correlated, and what a
+// The first lens is taken that no other one beats: by more than 2 % in pixels, or by more than 1 % and beyond chance, by
+// Student's t at 1 % of the mean squares of samples, or of their logarithms.  Pixels decide, not coefficients: these are correlated, and what a
 // coefficient is does not matter where others make up for it.  A lens is out if it folds over where features are, does not fit
 // at all, or if its pixels where features are, or its focal length at the axis, are not determined.  One whose coefficients make up
 // for fx, or whose pixels are known worse than to a pixel and than corners fit, comes in only if there is no other.
