@@ -328,11 +328,10 @@ std::string findings_text(const Findings& findings, Figures figures) {
         findings.drawn);
   }
   const std::string cameras = detail::cameras_text(findings);
-  const bool are_alone = findings.poses.joints.empty();
   std::vector<std::string> parts = {detail::fit_table(findings),
                                     detail::parameters_text(findings, figures),
                                     read_back_text(findings.read_back)};
-  parts.insert(are_alone ? parts.begin() + 1 : parts.end(), cameras);
+  parts.insert(detail::are_cameras_alone(findings) ? parts.begin() + 1 : parts.end(), cameras);
   text += "\n";
   for (const std::string& part : parts) {
     if (!part.empty()) text += "\n" + part;
