@@ -1,7 +1,7 @@
 // Which lens `lens: auto` takes, and how good it is: a study of simulated cameras, narrow ones and fisheyes, with few views and
 // many.
 //
-//   KINECAL_REPETITIONS=500 tools_tests --gtest_filter=FindLenses.*     prints the figures of MANUAL.md
+//   KINECAL_REPETITIONS=500 tools_tests --gtest_filter=FindLenses.ImagesAsWellAsAnyOther     prints how good the choice is
 #include "kinecal/tools/cameras/find_lenses.hpp"
 
 #include <gmock/gmock.h>
