@@ -9,6 +9,7 @@
 #include <random>
 
 #include "support/arm_scene.hpp"
+#include "support/unknown_poses.hpp"
 
 namespace kinecal {
 namespace {
@@ -253,6 +254,35 @@ TEST_F(ExplainFit, AProgramHasItsOwnSuspects) {
   const std::vector<Suspect> own = {gear};
   EXPECT_THAT(explained({.own = own}).cause,
               testing::StartsWith("with the gear of 'roll' of 1.25"));
+}
+
+/// A board whose squares were given 13 % too small to twice too large, before a camera in the hand or on a stand, whose focal
+/// lengths are free: these take up a part of it, and lead astray.
+TEST(SizeOfABoard, IsNamedBesideFreeFocalLengths) {
+  for (const bool in_hand : {true, false}) {
+    for (const double factor : {0.87, 1.15, 0.5, 2.0, 2.54}) {
+      test::Scenario scenario = test::board_scenario(in_hand, 3, 14);
+      for (Sample& sample : scenario.samples) {
+        for (Feature& corner : sample.observations[0].features) corner.point *= factor;
+      }
+      const std::string cause =
+          explain_fit(scenario.config, scenario.robot, scenario.samples).cause;
+      const std::string words = "with the points of 'board_holder' multiplied by ";
+      ASSERT_THAT(cause, HasSubstr(words)) << factor;
+      EXPECT_NEAR(factor * std::stod(cause.substr(cause.find(words) + words.size())), 1.0, 0.03)
+          << cause;
+    }
+  }
+}
+
+/// Ten times: pixels do not shrink with the points.
+TEST(SizeOfABoard, OfTenTimesIsNamed) {
+  test::Scenario scenario = test::board_scenario(false, 3, 14);
+  for (Sample& sample : scenario.samples) {
+    for (Feature& corner : sample.observations[0].features) corner.point *= 10.0;
+  }
+  EXPECT_THAT(explain_fit(scenario.config, scenario.robot, scenario.samples).cause,
+              HasSubstr("with the points of 'board_holder' multiplied by 0.1"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -203,8 +204,10 @@ struct Company {
   return count.alone > 0 && count.beside > 0;
 }
 
+/// @param sigma  stated_sigma()
 /// @throws std::exception  if the block's numbers are impossible or its sensors do not match
-void add_block(AnyProblem& problem, const BlockConfig& block, bool exclusive) {
+void add_block(AnyProblem& problem, const BlockConfig& block, bool exclusive,
+               const std::optional<double>& sigma) {
   const BlockEntry* entry = entry_of(block);
   if (entry == nullptr) throw std::invalid_argument("no type '" + block.type + "'");
   TermOptions options;
@@ -213,7 +216,7 @@ void add_block(AnyProblem& problem, const BlockConfig& block, bool exclusive) {
   options.exclusive = exclusive;
   options.beside = block.ground;
   options.loss = {loss_type(block.loss.type), block.loss.scale};
-  options.sigma = block.sigma;
+  options.sigma = sigma;
   if (const auto scale = block.numbers.find("scale"); scale != block.numbers.end()) {
     options.scale = scale->second;
   }
@@ -581,7 +584,8 @@ bool add_models(AnyProblem& problem, const StepConfig& step, std::span<const Sam
   for (const BlockConfig& block : step.error_blocks) {
     try {
       add_block(problem, block,
-                block.exclusive.value_or(is_exclusive_by_default(block, step, samples)));
+                block.exclusive.value_or(is_exclusive_by_default(block, step, samples)),
+                stated_sigma(block, step, samples));
     } catch (const std::exception& e) {
       const std::string what = e.what(), subject = "error block '" + block.name + "'";
       diagnostics.error(block.place,
@@ -643,6 +647,37 @@ void prepare_search(CalibrationStep& step, const Config& config, const StepConfi
 
 }  // namespace
 }  // namespace detail
+
+std::optional<double> stated_sigma(const BlockConfig& block, const StepConfig& step,
+                                   std::span<const Sample> samples) {
+  const BlockEntry* entry = entry_of(block);
+  const bool of_pixels = entry != nullptr && entry->unit == "px";  // takes those of its camera only
+  double variance = 0.0;  // those of several sensors add up
+  bool have_all = true;
+  for (const ModelConfig& model : step.models) {
+    const bool is_of_block =
+        std::find(block.models.begin(), block.models.end(), model.name) != block.models.end();
+    if (!is_of_block || (of_pixels && !detail::sensor_of(model)->delivers(Quantity::pixel)))
+      continue;
+    double information = 0.0;
+    int with = 0, without = 0;
+    for (const Sample& sample : samples) {
+      const Observation* seen = sample.observation(model.name);
+      if (seen == nullptr) continue;
+      for (const Feature& feature : seen->features) {
+        const double sigma = feature.sigma.value_or(0.0);
+        if (!feature.point.allFinite()) continue;
+        ++(sigma > 0.0 ? with : without);
+        if (sigma > 0.0) information += 1.0 / (sigma * sigma);
+      }
+    }
+    if (with == 0) continue;
+    variance += with / information;
+    have_all = have_all && without == 0;
+  }
+  const bool is_stated = std::isnormal(variance) && (have_all || !block.sigma);
+  return is_stated ? std::optional(std::sqrt(variance)) : block.sigma;
+}
 
 Calibration assemble(const Config& given, const Robot& of_urdf, std::span<const Sample> samples,
                      Diagnostics& diagnostics) {

@@ -57,13 +57,13 @@ void set_image(Config& config, const std::string& camera, ImageKind image) {
 }
 
 /// Adds a loss to pixel error blocks, so that bad captures do not decide.
-void add_losses(Config& config) {
+void add_losses(Config& config, std::span<const Sample> samples) {
   constexpr double kScale = 2.0;  // pixels
   for (StepConfig& step : config.steps) {
     for (BlockConfig& block : step.error_blocks) {
       const BlockEntry* entry = entry_of(block);
       if (entry == nullptr || entry->unit != "px" || block.loss.type != "none") continue;
-      block.loss = {"cauchy", kScale / block.sigma.value_or(1.0)};
+      block.loss = {"cauchy", kScale / stated_sigma(block, step, samples).value_or(1.0)};
     }
   }
 }
@@ -74,7 +74,7 @@ void add_losses(Config& config) {
                                                 const std::string& camera, ImageKind image) {
   constexpr int kEnough = 100;  // iterations
   set_image(config, camera, image);
-  add_losses(config);
+  add_losses(config, samples);
   Diagnostics quiet;
   Calibration calibration = assemble(config, robot, samples, quiet);
   if (!quiet.errors.empty() || calibration.steps.empty()) return std::nullopt;

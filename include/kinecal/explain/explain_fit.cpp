@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/config/configured_sensor.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/evaluation/parallel.hpp"
 #include "kinecal/explain/refit.ipp"
@@ -47,7 +48,14 @@ struct ScaledFit {
   return samples;
 }
 
-/// The fit at the best scale, by parabolas through three costs over the logarithm of the scale; nullopt if it leaves
+/// A cost without what smaller lengths take off; larger ones need not make residuals larger, and pixels stay pixels.
+/// @param factor  of lengths
+[[nodiscard]] double in_measured_units(const Refits& refits, double cost, double factor) {
+  const double by = refits.are_of_pixels() ? 1.0 : std::min(1.0, factor);
+  return cost / (by * by);
+}
+
+/// The fit at the best scale, from the best of some far ones where the samples do not fit as they are, by parabolas through three costs over the logarithm of the scale; nullopt if it leaves
 /// more than a part of the cost, in units that do not shrink.
 [[nodiscard]] std::optional<ScaledFit> scaled_fit(const Refits& refits, const Suspect& suspect,
                                                   const Refit& now, double part) {
@@ -56,43 +64,92 @@ struct ScaledFit {
   constexpr int kSteps = 8;
   double best = 0.0, step = kFirst;
   Refit at_best = now;
+  if (!fits(now)) {  // a board of twice the size is beyond what a parabola shows
+    constexpr int kSide = 5;
+    std::vector<std::optional<Refit>> afar(2 * kSide + 1);
+    const auto at = [&](int i) { return kFurthest * (i - kSide) / kSide; };
+    for_each_piece(2 * kSide + 1, number_of_threads(0), [&](int i, int) {
+      if (i != kSide) afar[static_cast<std::size_t>(i)] = fit(at(i));
+    });
+    for (int i = 0; i < 2 * kSide + 1; ++i) {
+      std::optional<Refit>& one = afar[static_cast<std::size_t>(i)];
+      if (!one || !(in_measured_units(refits, one->cost, std::exp(at(i))) <
+                    in_measured_units(refits, at_best.cost, std::exp(best)))) {
+        continue;
+      }
+      best = at(i);
+      at_best = *std::move(one);
+    }
+  }
   for (int i = 0; i < kSteps && step > kEnough; ++i) {
     const auto above = fit(best + step);
     if (!above) return std::nullopt;
-    if (i == 0 && std::abs(above->cost - now.cost) < kNothing * now.cost) {
+    if (i == 0 && std::abs(above->cost - at_best.cost) < kNothing * at_best.cost) {
       return std::nullopt;  // no sample knows it, as where cameras alone see a board
     }
     const auto below = fit(best - step);
     if (!below) return std::nullopt;
     const double curvature = below->cost - 2.0 * at_best.cost + above->cost;
     const double slope = 0.5 * (above->cost - below->cost);
-    const double most = 4.0 * step;
+    const double most = 4.0 * step, center = best;
     const double move = curvature > 0.0 ? std::clamp(-slope / curvature * step, -most, most)
                                         : (slope > 0.0 ? -most : most);
-    const auto next = fit(best + move);
-    if (!next || std::abs(best + move) > kFurthest) return std::nullopt;
-    if (next->cost < at_best.cost) {
-      best += move;
-      at_best = *next;
+    const auto next = fit(center + move);
+    const bool is_in_reach = next && std::abs(center + move) <= kFurthest;
+    const double reached = step;
+    for (const auto& [x, one] : {std::pair(center + reached, &above),
+                                 {center - reached, &below},
+                                 {center + move, &next}}) {
+      if (!*one || std::abs(x) > kFurthest || !((*one)->cost < at_best.cost)) continue;
+      best = x;
+      at_best = **one;
     }
+    if (best == center && !is_in_reach) return std::nullopt;
     if (i == 0 && std::abs(move) < most && at_best.cost > 2.0 * part * now.cost) {
       return std::nullopt;  // the parabola shows well enough that nothing can be gained
     }
-    step = std::min(step, std::max(0.1 * step, std::abs(move)));
+    step = std::min(step, std::max(0.1 * step, std::abs(best == center ? move : best - center)));
   }
-  if (at_best.cost * std::max(1.0, std::exp(-2.0 * best)) >= part * now.cost) return std::nullopt;
+  if (in_measured_units(refits, at_best.cost, std::exp(best)) >= part * now.cost)
+    return std::nullopt;
   return ScaledFit{std::exp(best), std::move(at_best)};
+}
+
+/// A configuration that holds the intrinsics and lenses of cameras.
+[[nodiscard]] Config with_cameras_held(Config config) {
+  std::set<std::string> names;
+  for (const ModelConfig& model : models_of(config)) {
+    const std::shared_ptr<const AnySensor> sensor = sensor_of(model);
+    if (!sensor->delivers(Quantity::pixel)) continue;
+    for (const ParameterInfo& info : sensor->parameters()) {
+      names.insert(parameter_name(model.param_name, info.name));
+    }
+  }
+  for (StepConfig& step : config.steps) {
+    std::erase_if(step.free_params, [&](const auto& free) { return names.contains(free.name); });
+  }
+  return config;
+}
+
+/// True if some step of a configuration frees less than that of another one.
+[[nodiscard]] bool frees_less(const Config& config, const Config& than) {
+  for (std::size_t s = 0; s < config.steps.size(); ++s) {
+    if (config.steps[s].free_params.size() < than.steps[s].free_params.size()) return true;
+  }
+  return false;
 }
 
 /// Scales of points at which the noise is half as large, as sentences.
 /// @param scales  suspects that are scales
+/// @param most    the cost must fall to this, too
 [[nodiscard]] std::vector<std::string> scale_sentences(const Refits& refits, const Refit& now,
-                                                       const std::vector<Suspect>& scales) {
+                                                       const std::vector<Suspect>& scales,
+                                                       double most = HUGE_VAL) {
   constexpr double kHalfNoise = 0.25;
   std::vector<std::string> found;
   for (const Suspect& suspect : scales) {
     const auto scaled = scaled_fit(refits, suspect, now, kHalfNoise);
-    if (!scaled) continue;
+    if (!scaled || scaled->after.cost > most) continue;
     found.push_back(fmt::format("{}multiplied by {:.4g}, {}", suspect.undone, scaled->factor,
                                 fall_of(now, scaled->after)));
   }
@@ -423,8 +480,9 @@ struct Explanation {
 /// Weighs suspects.
 class Weighing {
  public:
-  Weighing(const Refits& refits, const std::vector<Suspect>& suspects)
-      : refits_(refits), suspects_(suspects), now_(refits.as_given()) {}
+  /// @param held  with the intrinsics of cameras held, which take up a scale, or lead astray; nullptr: none is free
+  Weighing(const Refits& refits, const Refits* held, const std::vector<Suspect>& suspects)
+      : refits_(refits), held_(held), suspects_(suspects), now_(refits.as_given()) {}
 
   [[nodiscard]] Explained run(bool combines) {
     if (now_ && is_exact(*now_)) return {};
@@ -466,7 +524,7 @@ class Weighing {
     });
     for (std::size_t i = 0; i < lists.size(); ++i) {
       if (!fits[i]) continue;
-      const double cost = in_measured_units(fits[i]->cost, shrinking(lists[i]));
+      const double cost = in_measured_units(refits, fits[i]->cost, shrinking(lists[i]));
       all.push_back({lists[i], *std::move(fits[i]), cost, text_of(lists[i])});
     }
   }
@@ -476,7 +534,7 @@ class Weighing {
     for_each_piece(static_cast<int>(lists.size()), number_of_threads(0), [&](int i, int) {
       const auto at = static_cast<std::size_t>(i);
       const std::optional<double> rough = refits.rough_cost(lists[at]);
-      order[at] = {rough ? in_measured_units(*rough, shrinking(lists[at])) : HUGE_VAL, at};
+      order[at] = {rough ? in_measured_units(refits, *rough, shrinking(lists[at])) : HUGE_VAL, at};
     });
     std::sort(order.begin(), order.end());
     Together sorted;
@@ -489,16 +547,15 @@ class Weighing {
     for (const Suspect* suspect : suspects) shrinks *= suspect->shrinks;
     return shrinks;
   }
-  /// A cost without what smaller lengths take off; larger ones need not make residuals larger.
-  [[nodiscard]] static double in_measured_units(double cost, double factor) {
-    const double by = std::min(1.0, factor);
-    return cost / (by * by);
-  }
   void try_scale(const Suspect& suspect) {
     if (!now_) return;
     auto scaled = scaled_fit(refits_, suspect, *now_, kHelps);
+    const bool is_found = scaled && fits(scaled->after) && scaled->after.implausible == 0;
+    if (!is_found && held_ != nullptr) {
+      if (auto of_held = scaled_fit(*held_, suspect, *now_, kHelps)) scaled = std::move(of_held);
+    }
     if (!scaled) return;
-    const double cost = in_measured_units(scaled->after.cost, scaled->factor);
+    const double cost = in_measured_units(refits_, scaled->after.cost, scaled->factor);
     all_.push_back({{&suspect},
                     std::move(scaled->after),
                     cost,
@@ -685,6 +742,7 @@ class Weighing {
   }
 
   const Refits& refits_;
+  const Refits* held_;
   const std::vector<Suspect>& suspects_;
   std::vector<Suspect> in_part_;
   std::optional<Refit> now_;
@@ -701,7 +759,10 @@ Explained explain_fit(const Config& config, const Robot& robot, std::span<const 
   const detail::Refits refits(config, robot, samples, solve);
   std::vector<Suspect> suspects = suspects_of(config, robot, refits.some());
   suspects.insert(suspects.end(), options.own.begin(), options.own.end());
-  return detail::Weighing(refits, suspects).run(options.combines);
+  const Config of_held = detail::with_cameras_held(config);
+  std::optional<detail::Refits> held;
+  if (detail::frees_less(of_held, config)) held.emplace(of_held, robot, samples, solve);
+  return detail::Weighing(refits, held ? &*held : nullptr, suspects).run(options.combines);
 }
 
 std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
@@ -714,9 +775,23 @@ std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
   std::vector<Suspect> scales = suspects_of(config, robot, refits.some());
   std::erase_if(scales, [](const Suspect& suspect) { return !suspect.scale; });
   if (auto found = detail::scale_sentences(refits, *now, scales); !found.empty()) return found;
+  std::vector<std::string> found;
+  if (const Config of_held = detail::with_cameras_held(config);
+      detail::frees_less(of_held, config)) {
+    constexpr double kAsGood = 1.3;
+    const detail::Refits held(of_held, robot, samples, solve);
+    const std::optional<detail::Refit> then = held.as_given();
+    if (then) found = detail::scale_sentences(held, *then, scales, kAsGood * now->cost);
+    for (std::string& sentence : found) {
+      sentence +=
+          " with the intrinsics of cameras as they were given: these samples do not tell the size "
+          "of the "
+          "target from a focal length; measure the target, or calibrate the camera alone";
+    }
+    if (!found.empty()) return found;
+  }
   const std::vector<detail::FreeLength> lengths = detail::free_lengths(robot, solution, last);
   if (lengths.size() < 2) return {};
-  std::vector<std::string> found;
   for (const Suspect& suspect : scales) {
     auto scaled = detail::absorbed_scale(refits, suspect, *now, lengths);
     if (scaled) found.push_back(*std::move(scaled));

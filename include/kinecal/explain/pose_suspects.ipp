@@ -67,8 +67,9 @@ using Reread = std::function<Matrix3<double>(const Matrix3<double>&)>;
 inline void add_pose_suspects(const Config& config, std::span<const Sample> samples,
                               std::vector<Suspect>& all) {
   for (const std::string& joint : measured_poses(config, samples)) {
-    const auto add = [&](const std::string& undone, const auto& change) {
-      all.push_back({.undone = undone, .correct = [=](Sample& s) {
+    const auto add = [&](const std::string& undone, const auto& change,
+                         SuspectKind kind = SuspectKind::mistake) {
+      all.push_back({.undone = undone, .kind = kind, .correct = [=](Sample& s) {
                        const auto at = s.poses.find(joint);
                        if (at != s.poses.end()) at->second = change(at->second);
                      }});
@@ -85,10 +86,13 @@ inline void add_pose_suspects(const Config& config, std::span<const Sample> samp
       });
     }
     for (const double factor : {1e3, 1e2, 1e1, 1e-1, 1e-2, 1e-3}) {
-      add(fmt::format("with positions multiplied by {}{}", factor, in),
+      const bool is_unit = factor > 50.0 || factor < 0.05;  // nobody's robot is in decimetres
+      add(
+          fmt::format("with positions multiplied by {}{}", factor, in),
           [factor](const Pose<double>& pose) {
             return Pose<double>{pose.rotation, factor * pose.translation};
-          });
+          },
+          is_unit ? SuspectKind::mistake : SuspectKind::property);
     }
   }
 }

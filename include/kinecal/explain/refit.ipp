@@ -110,6 +110,14 @@ class Refits {
   [[nodiscard]] bool is_in_one_step() const {
     return !calibration_ || calibration_->steps.size() == 1;
   }
+  /// True if all residuals are pixels, which do not shrink with the points.
+  [[nodiscard]] bool are_of_pixels() const {
+    if (!calibration_) return false;
+    for (int t = 0; t < problem().num_terms(); ++t) {
+      if (problem().term(t).options.unit != "px") return false;
+    }
+    return true;
+  }
   /// The free parameters of the last step.
   [[nodiscard]] const FreeSet& free() const { return calibration_->steps.back().free; }
   /// The problem of the last step.

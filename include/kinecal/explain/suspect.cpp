@@ -188,9 +188,9 @@ void add_features(const Config& config, std::span<const Sample> samples, Suspect
     };
     if (pixels.contains(name)) continue;
     const std::pair<const char*, double> units[] = {
-        {"taken as millimetres", 1e-3}, {"taken as centimetres", 1e-2},
-        {"taken as inches", 0.0254},    {"multiplied by 10", 1e1},
-        {"multiplied by 100", 1e2},     {"multiplied by 1000", 1e3}};
+        {"taken as millimetres", 1e-3}, {"taken as centimetres", 1e-2}, {"taken as inches", 0.0254},
+        {"multiplied by 0.1", 1e-1},    {"multiplied by 10", 1e1},      {"multiplied by 100", 1e2},
+        {"multiplied by 1000", 1e3}};
     for (const auto& [undone, factor] : units) {
       const double by = factor;
       add(

@@ -14,6 +14,9 @@
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/report/parameters_text.ipp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/sensors/built_in_sensor.hpp"
+#include "kinecal/sensors/lens_camera.hpp"
+#include "kinecal/sensors/lenses/lens_names.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/image_region.hpp"
 #include "kinecal/text/reading.hpp"
@@ -35,39 +38,76 @@ namespace {
   return metres.empty() ? 0.0 : median_of(std::move(metres));
 }
 
-/// "fx 800.12 +- 0.05, fy 800.3 +- 0.05, cx ... px; k1 -0.2501 +- 0.0003": as camera files have them.
-[[nodiscard]] std::string numbers_text(const ProjectionMap& map) {
-  std::string text;
-  for (std::size_t i = 0; i < map.numbers.size(); ++i) {
-    const CameraNumber& number = map.numbers[i];
-    const bool pixels = number.name.size() == 2 && (number.name[0] == 'f' || number.name[0] == 'c');
-    if (!pixels && !number.deviation) continue;
-    text += i == 0 ? "" : !pixels && map.numbers[i - 1].name == "cy" ? " px; " : ", ";
-    text += number.name +
-            (pixels ? fmt::format(" {:.2f}", number.value) : fmt::format(" {:.5g}", number.value));
-    if (!number.deviation) continue;
-    const double known = *number.deviation;
-    text += !std::isfinite(known) ? " not determined"
-            : pixels              ? fmt::format(" +- {:.2f}", known)
-                                  : fmt::format(" +- {:.2g}", known);
+/// The lens of a camera: the one whose coefficients are among its numbers; empty for rectified images.
+[[nodiscard]] std::string_view lens_of(const ProjectionMap& map) {
+  for (const std::string_view lens : lens_names()) {
+    const auto sensor = any_built_in(lens_camera(lens, ImageKind::raw));
+    const auto coefficients = sensor->parameters().subspan(kIntrinsics);
+    std::size_t others = map.numbers.size();
+    for (const ParameterInfo& info : sensor->parameters()) others -= map.number(info.name) ? 1 : 0;
+    others -= map.number(ProjectionMap::kAxisFocal) != nullptr ? 1 : 0;
+    const bool has_all =
+        std::all_of(coefficients.begin(), coefficients.end(),
+                    [&](const ParameterInfo& info) { return map.number(info.name) != nullptr; });
+    if (has_all && others == 0) return lens;
   }
-  const bool has_lens = text.find(';') != std::string::npos;
-  return text.empty() ? "" : "  " + text + (has_lens ? "" : " px") + "\n";
+  return "";
 }
+
+}  // namespace
+}  // namespace detail
+
+std::string camera_numbers(const ProjectionMap& map) {
+  std::string pixels, lens, at_axis;
+  bool is_bent = false;
+  for (const CameraNumber& number : map.numbers) {
+    const bool is_at_axis = number.name == ProjectionMap::kAxisFocal;
+    const bool is_pixels = is_at_axis || number.name[0] == 'f' || number.name[0] == 'c';
+    is_bent = is_bent || (!is_pixels && number.value != 0.0);
+    if (!is_pixels && !number.deviation) continue;
+    std::string text = number.name;
+    text += is_pixels ? fmt::format(" {:.2f}", number.value) : fmt::format(" {:.5g}", number.value);
+    if (number.deviation) {
+      const double known = *number.deviation;
+      text += !std::isfinite(known) ? " not determined"
+              : is_pixels           ? fmt::format(" +- {:.2f}", known)
+                                    : fmt::format(" +- {:.2g}", known);
+    }
+    std::string& list = is_at_axis ? at_axis : is_pixels ? pixels : lens;
+    list += (list.empty() ? "" : ", ") + text;
+  }
+  if (pixels.empty()) return "";
+  std::string text = pixels + " px";
+  if (const std::string_view name = detail::lens_of(map); !name.empty()) {
+    text += fmt::format("; {}{}", name,
+                        !lens.empty() ? " " + lens
+                        : is_bent     ? ""
+                                      : " without distortion");
+  }
+  return text + (at_axis.empty() ? "" : "; " + at_axis + " px");
+}
+
+namespace detail {
+namespace {
 
 /// "Camera 'eye': a pixel is known to 0.03 px where features are (0.05 mm at 0.8 m), 0.4 px at the worst place of its image".
 [[nodiscard]] std::string camera_text(const ProjectionMap& map) {
   const auto [least, median, most] = map.deviations();
   std::string text =
-      fmt::format("Camera '{}': a pixel is known to {} where features are", map.sensor,
-                  std::isfinite(median) ? reading(median, "px") : "nothing");
+      std::isfinite(median)
+          ? fmt::format("Camera '{}': a pixel is known to {} where features are", map.sensor,
+                        reading(median, "px"))
+          : fmt::format("Camera '{}': its pixels are not determined, also where features are",
+                        map.sensor);
   if (map.distance > 0.0 && std::isfinite(median)) {
     text += fmt::format(" ({} at {:.2g} m)", reading(known_metres(map), "m"), map.distance);
   }
   if (std::isfinite(most)) {
     text += fmt::format(", to {} at the worst place of its image", reading(most, "px"));
   }
-  text += "\n" + numbers_text(map);
+  text += "\n";
+  if (const std::string numbers = camera_numbers(map); !numbers.empty())
+    text += "  " + numbers + "\n";
   if (map.halves) {
     text += fmt::format("  two halves of the samples differ by {}; the +- allow {}\n",
                         reading(map.halves->difference, "px"), reading(map.halves->allowed, "px"));
@@ -287,11 +327,15 @@ std::string findings_text(const Findings& findings, Figures figures) {
         "the\nsamples below are of {} drawn evenly from all files",
         findings.drawn);
   }
-  text += "\n\n" + detail::fit_table(findings) + "\n" + detail::parameters_text(findings, figures);
-  const std::string read_back = read_back_text(findings.read_back);
-  if (!read_back.empty()) text += "\n" + read_back;
   const std::string cameras = detail::cameras_text(findings);
-  if (!cameras.empty()) text += "\n" + cameras;
+  std::vector<std::string> parts = {detail::fit_table(findings),
+                                    detail::parameters_text(findings, figures),
+                                    read_back_text(findings.read_back)};
+  parts.insert(detail::are_cameras_alone(findings) ? parts.begin() + 1 : parts.end(), cameras);
+  text += "\n";
+  for (const std::string& part : parts) {
+    if (!part.empty()) text += "\n" + part;
+  }
   for (const Assessment& step : findings.assessments) {
     const std::string open =
         observability_text(step.step, step.observability, findings.result.table);

@@ -75,4 +75,8 @@ enum class Figures { readable, raw };
 /// The result in one line: "good · hand_eye 1.11 mm (held out 1.14) · 1 of 125 samples left out".
 [[nodiscard]] std::string findings_line(const Findings& findings);
 
+/// "fx 800.12 +- 0.05, fy 800.3 +- 0.05, cx ..., cy ... px; plumb_bob k1 -0.2501 +- 0.0003": as camera files have them; empty
+/// if the camera has none.
+[[nodiscard]] std::string camera_numbers(const ProjectionMap& map);
+
 }  // namespace kinecal

@@ -236,6 +236,7 @@ namespace {
   std::vector<std::vector<std::string>> rows = {
       {"parameter", "calibrated", "±", "from", "unit", ""}};
   for (const ReportedParameter& parameter : data.parameters) {
+    if (parameter.note == kInCamera) continue;
     const auto [value, unit] = for_people(parameter.value, parameter.unit);
     rows.push_back({parameter.name, value,
                     parameter.sigma ? for_people(*parameter.sigma, parameter.unit).first : "-",
@@ -336,6 +337,29 @@ namespace {
   return "<div><h3>Largest corrections</h3><ul>" + items + "</ul></div>\n";
 }
 
+/// What cameras are, in a list each: "fx 800.12 ± 0.05", ..., and how well a pixel is known.
+[[nodiscard]] std::string cameras_found(const ReportData& data) {
+  std::string html;
+  for (const ProjectionMap& map : data.cameras) {
+    std::string numbers = camera_numbers(map);
+    if (numbers.empty()) continue;
+    for (const auto& [from, to] : {std::pair("; ", "</li><li>"), std::pair(" +- ", " &plusmn; ")}) {
+      for (std::size_t at = 0; (at = numbers.find(from, at)) != std::string::npos;) {
+        numbers.replace(at, std::string_view(from).size(), to);
+      }
+    }
+    const double known = map.deviations()[1];
+    html +=
+        fmt::format("<div><h3>Camera <code>{}</code></h3><ul><li>{}</li><li>{}</li></ul></div>\n",
+                    html_name(map.sensor), numbers,
+                    std::isfinite(known)
+                        ? fmt::format("a pixel is known to <strong>{}</strong> where features are",
+                                      reading(known, "px"))
+                        : "its pixels are not determined");
+  }
+  return html;
+}
+
 /// Samples that do not fit, in a list.
 [[nodiscard]] std::string bad_samples(const ReportData& data) {
   constexpr int kListed = 5;
@@ -408,10 +432,10 @@ namespace {
   return fmt::format(
       "<header class=\"verdict {}\">\n"
       "<h1>{}: <strong>{}</strong></h1>\n<p class=\"note\">{}</p>\n{}{}"
-      "<div class=\"facts\">{}{}{}</div>\n</header>\n",
+      "<div class=\"facts\">{}{}{}{}</div>\n</header>\n",
       class_of(data.verdict), html_name(data.robot), to_string(data.verdict), html_sentence(about),
       reasons.empty() ? "" : "<ul class=\"reasons\">" + reasons + "</ul>\n", html_next(data.next),
-      fit_sentence(data), what_was_wrong(data), bad_samples(data));
+      cameras_found(data), fit_sentence(data), what_was_wrong(data), bad_samples(data));
 }
 
 }  // namespace

@@ -22,6 +22,26 @@ namespace kinecal::detail {
   return false;
 }
 
+/// True of cameras alone: each sample has a pose of its own.
+[[nodiscard]] inline bool are_cameras_alone(const Findings& findings) {
+  constexpr double kOwn = 5.0;  // residuals of a sample, of the six of a pose
+  if (findings.assessments.empty()) return false;
+  const Assessment& last = findings.assessments.back();
+  return last.used > kOwn * static_cast<double>(last.samples);
+}
+
+/// True if a parameter is shown among the numbers of its camera: nobody knew these of cameras alone, so that a change in
+/// per cent says nothing.
+[[nodiscard]] inline bool is_of_camera_alone(const Findings& findings, const Parameter& parameter) {
+  if (!are_cameras_alone(findings)) return false;
+  for (const ProjectionMap& map : findings.assessments.back().maps) {
+    for (const CameraNumber& number : map.numbers) {
+      if (parameter.name == parameter_name(map.sensor, number.name)) return true;
+    }
+  }
+  return false;
+}
+
 /// The parameters that were searched for, or the others.
 [[nodiscard]] inline std::string parameter_rows(const Findings& findings, bool unknown,
                                                 Figures figures) {
@@ -33,6 +53,7 @@ namespace kinecal::detail {
   for (const int i : findings.result.calibrated) {
     const Parameter& parameter = findings.result.table[i];
     if (was_unknown(findings, parameter) != unknown) continue;
+    if (is_of_camera_alone(findings, parameter)) continue;
     ++rows;
     const auto deviation = findings.deviation(i);
     const auto [after, unit] = for_people(parameter.value, parameter.unit);

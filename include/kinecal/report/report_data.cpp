@@ -17,6 +17,7 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/report/json_state.ipp"
 #include "kinecal/report/left_out.ipp"
+#include "kinecal/report/parameters_text.ipp"
 #include "kinecal/trust/uncertainty/feature_places.hpp"
 
 namespace kinecal {
@@ -210,6 +211,7 @@ void add_sight(const AnyProblem& problem, const Term& term, const Sample& sample
     reported.note = deviation                      ? note_on(parameter, *deviation)
                     : findings.assessments.empty() ? ""
                                                    : "at its bound";
+    if (is_of_camera_alone(findings, parameter)) reported.note = kInCamera;
   }
   return all;
 }

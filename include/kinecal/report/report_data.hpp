@@ -78,8 +78,11 @@ struct ReportedParameter {
   double value = 0.0, initial = 0.0;
   std::optional<double> sigma;  ///< standard deviation; nullopt: not determined, or at a bound
   std::string
-      note;  ///< "", "not significant", "not determined", "hardly determined", "at its bound"
+      note;  ///< "", "not significant", "not determined", "hardly determined", "at its bound", kInCamera
 };
+
+/// Notes a parameter whose value is among the numbers of its camera, in pixels.
+inline constexpr const char* kInCamera = "see camera";
 
 /// The content of a report.
 struct ReportData {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "kinecal/geometry/median.hpp"
@@ -81,6 +82,20 @@ namespace {
   }
 }
 
+/// The parameters of cameras whose pixels are known: a coefficient of a lens says nothing by itself.
+[[nodiscard]] std::set<int> known_by_pixels(const AnyProblem& problem,
+                                            const std::vector<ProjectionMap>& maps) {
+  std::set<int> all;
+  for (const ProjectionMap& map : maps) {
+    if (!map.is_known() || map.focal_deviation() > ProjectionMap::kKnownFocal) continue;
+    for (const MountedSensor& camera : problem.sensors()) {
+      if (camera.mount().name != map.sensor) continue;
+      all.insert(camera.parameters().begin(), camera.parameters().end());
+    }
+  }
+  return all;
+}
+
 /// The median +- of the pose in question over the limits of the joints; 0 if it is not known there.
 [[nodiscard]] double deviation_elsewhere(const AnyProblem& problem, const Assessment& step,
                                          ParameterValues values) {
@@ -145,7 +160,6 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   const Eigen::MatrixXd effects = detail::joint_effects(problem, values, samples, inside, fit);
   found.common = common_noise(fit, effects, single, found.noise);
   detail::set_uncertainty(problem, inside, values, fit, inverse, poses, found);
-  found.weak = weak_parameters(problem, inside, found.uncertainty);
   found.captures = capture_errors(problem, fit, single);
   found.noise_without_bad = noise_without_bad(fit, found.captures);
   found.systematic = systematic_error({problem, inside, fit, values, samples}, poses, effects,
@@ -153,6 +167,8 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.folded = folded_lenses(problem, free, values, samples);
   found.maps =
       projection_maps({*evaluator, inside, values, fit, found.uncertainty, samples, poses});
+  found.weak = weak_parameters(problem, inside, found.uncertainty,
+                               detail::known_by_pixels(problem, found.maps));
   found.alike = alike_pixels(problem, fit, found.maps, samples);
   found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
   found.held_out = detail::held_out_of(*evaluator, values, fit, samples, poses, options);

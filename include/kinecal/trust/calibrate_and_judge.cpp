@@ -162,7 +162,13 @@ std::string capture_text(const CaptureError& error, const Assessment& assessment
   const BlockNoise& noise = assessment.noise[static_cast<std::size_t>(error.term)];
   const std::string block = "error block '" + noise.block + "': ";
   char times[48];
-  (void)std::snprintf(times, sizeof times, "%.1f times the noise", error.times);
+  constexpr double kMost =
+      1e4;  // beyond it the noise is that of a few features, and the number says nothing
+  if (error.times > kMost) {
+    (void)std::snprintf(times, sizeof times, "over %.0f times the noise", kMost);
+  } else {
+    (void)std::snprintf(times, sizeof times, "%.1f times the noise", error.times);
+  }
   constexpr double kAlike = 0.8;
   if (error.others > 0.0 && error.least > kAlike * error.distance) {
     return block + "all features are about " + reading(error.distance, noise.unit) + " off, " +

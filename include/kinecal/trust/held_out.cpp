@@ -108,25 +108,30 @@ std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator, ParameterValu
   return errors;
 }
 
-std::vector<double> held_out_squares(const AnyProblem& problem, const FreeSet& free,
-                                     ParameterValues values, std::span<const Sample> samples,
-                                     int folds) {
+std::vector<std::vector<double>> held_out_distances(const AnyProblem& problem, const FreeSet& free,
+                                                    ParameterValues values,
+                                                    std::span<const Sample> samples,
+                                                    const std::string& sensor, int folds) {
   const auto evaluator = problem.evaluator(free, 1);
   const LinearFit fit =
       linear_fit(*evaluator, values, determined_coordinates(problem, free, values));
   const PoseGroups poses = pose_groups(problem, samples);
-  std::vector<double> squares(samples.size(), 0.0), rows(samples.size(), 0.0);
+  std::vector<std::vector<double>> distances(samples.size());
   const auto add = [&](const RowBlock& block, const Eigen::VectorXd& residual, double left) {
-    const auto s = static_cast<std::size_t>(block.sample);
-    squares[s] += residual.segment(block.first, block.size).squaredNorm();
-    rows[s] += left * static_cast<double>(block.size);
+    const Term& term = problem.term(block.term);
+    const bool is_of_sensor = std::any_of(term.sensors.begin(), term.sensors.end(), [&](int s) {
+      return problem.sensors()[static_cast<std::size_t>(s)].mount().name == sensor;
+    });
+    if (!is_of_sensor) return;
+    const double unit = 1.0 / (term.weight * std::sqrt(left));
+    for (Eigen::Index row = block.first; row < block.first + block.size; row += term.feature_size) {
+      distances[static_cast<std::size_t>(block.sample)].push_back(
+          unit * residual.segment(row, term.feature_size).norm());
+    }
   };
   const std::vector<int> fold = folds_of(samples, poses, std::min(folds, poses.count));
   detail::hold_out(*evaluator, values, fit, fold, {}, add);
-  for (std::size_t s = 0; s < squares.size(); ++s) {
-    if (rows[s] > 0.0) squares[s] /= rows[s];
-  }
-  return squares;
+  return distances;
 }
 
 }  // namespace kinecal

@@ -43,13 +43,13 @@ struct HeldOutError {
                                                         const std::vector<int>& fold,
                                                         const ProgressMeter& meter = {});
 
-/// Mean square of the residuals of each sample while its fold was held out, by sigma and the freedom that poses of its
-/// own leave; 0 without residuals.
+/// Distances of the features of a sensor in each sample while its fold was held out, in the unit of their error block, by the
+/// freedom that poses of the samples' own leave.
 /// @param values   of all parameters of the table: the solution
 /// @param samples  those of the problem, in their order
 /// @throws std::domain_error  if the samples without a fold determine nothing
-[[nodiscard]] std::vector<double> held_out_squares(const AnyProblem& problem, const FreeSet& free,
-                                                   ParameterValues values,
-                                                   std::span<const Sample> samples, int folds = 5);
+[[nodiscard]] std::vector<std::vector<double>> held_out_distances(
+    const AnyProblem& problem, const FreeSet& free, ParameterValues values,
+    std::span<const Sample> samples, const std::string& sensor, int folds = 5);
 
 }  // namespace kinecal

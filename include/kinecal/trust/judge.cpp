@@ -43,14 +43,14 @@ void judge_folds(const Assessment& step, Judgement& judgement) {
 void judge_views(const Assessment& step, const ParameterTable& table, Judgement& judgement) {
   constexpr double kOwn = 5.0;                      // residuals of a sample, of the six of a pose
   constexpr std::int64_t kFewest = 3, kEnough = 8;  // views
-  constexpr double kKnown = 0.05;                   // of the focal length
   if (!(step.used > kOwn * static_cast<double>(step.samples))) return;
   for (const int p : step.parameters) {
     const std::string& name = table[p].name;
     if (!name.ends_with("_fx")) continue;
     const std::string camera = name.substr(0, name.size() - 3);
-    // Of the length that was found, not of the one that it began with.
-    const double deviation = step.deviation(p).value_or(0.0) / std::abs(1.0 + table[p].value);
+    const auto map = std::find_if(step.maps.begin(), step.maps.end(),
+                                  [&](const ProjectionMap& of) { return of.sensor == camera; });
+    const bool is_mapped = map != step.maps.end() && map->focal() != nullptr;
     if (step.views < kEnough) {
       const std::string different = step.views < step.samples ? " different" : "";
       judgement.add(step.views < kFewest ? Grade::do_not_use : Grade::use_with_care,
@@ -60,14 +60,48 @@ void judge_views(const Assessment& step, const ParameterTable& table, Judgement&
                         "', and their +- mean little; take 20, tilted by 30 degrees to all sides",
                     {Remedy::Kind::record});
     }
-    if (deviation > kKnown) {  // infinite, if not at all
+    // Of the length that was found, not of the one that it began with.
+    const double deviation = is_mapped
+                                 ? map->focal_deviation()
+                                 : step.deviation(p).value_or(0.0) / std::abs(1.0 + table[p].value);
+    if (deviation > ProjectionMap::kKnownFocal) {  // infinite, if not at all
       judgement.add(
           Grade::do_not_use,
           "these views do not tell the focal length of '" + camera + "'" +
               (std::isfinite(deviation) ? " (+- " + reading(1e2 * deviation, "1") + " %)" : "") +
               ": tilt the target by 30 degrees to all sides",
           {Remedy::Kind::record});
+    } else if (!is_mapped) {
+      continue;
+    } else if (const CameraNumber& focal = *map->focal(); focal.name == ProjectionMap::kAxisFocal) {
+      judgement.add(Grade::use_with_care,
+                    "fx of '" + camera +
+                        "' and the coefficients of its lens make up for each other: only its focal "
+                        "length at the axis, " +
+                        std::to_string(std::lround(focal.value)) + " +- " +
+                        reading(*focal.deviation, "px") +
+                        ", is known; give it a lens with fewer coefficients ('lens: auto')",
+                    {Remedy::Kind::mend});
+    } else if (!map->is_known() && std::isfinite(map->deviations()[1])) {
+      judgement.add(Grade::use_with_care,
+                    "a pixel of '" + camera + "' is known to " +
+                        reading(map->deviations()[1], "px") +
+                        " only where features are; record more views, tilted by 30 degrees to all "
+                        "sides, or free fewer coefficients",
+                    {Remedy::Kind::record});
     }
+  }
+}
+
+/// What samples do not determine of a camera may move its pixels.
+void judge_pixels(const Assessment& step, Judgement& judgement) {
+  for (const ProjectionMap& map : step.maps) {
+    if (std::isfinite(map.deviations()[1])) continue;
+    judgement.add(Grade::use_with_care,
+                  "these samples do not determine the pixels of '" + map.sensor +
+                      "', not even where features are; record poses that differ more, or free "
+                      "fewer of its parameters",
+                  {Remedy::Kind::record});
   }
 }
 
@@ -260,6 +294,7 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
     if (last) detail::judge_held_out(assessments[s], judgement);
     if (last) detail::judge_folds(assessments[s], judgement);
     if (last) detail::judge_views(assessments[s], result.table, judgement);
+    if (last) detail::judge_pixels(assessments[s], judgement);
     if (last) detail::judge_projection(assessments[s], judgement);
     if (last && assessments[s].one_pose) {
       judgement.add(Grade::use_with_care,

@@ -24,7 +24,10 @@
 //                                                       configuration says it is
 //                                                       a parameter ended at a bound
 //                                                       a parameter known to 5 degrees, 20 mm, 5 %
-//                                                       or 20 px only
+//                                                       or 20 px only; of a camera only if its pixels
+//                                                       are not known
+//   cameras alone: a focal length known to 5 %          a pixel where features are known to 1 px, or not
+//   only                                                determined; fx that the lens makes up for
 //                                                       a prior that moves a parameter by 8
 //                                                       standard deviations
 //                                                       residuals of a camera that grow with the

@@ -488,5 +488,100 @@ TEST_F(SetCamera, RefusesASensorThatNoSampleHas) {
   EXPECT_THROW(set_camera(samples, "=c.yaml", diagnostics_), InputError);
 }
 
+const char* const kStereo = R"(%YAML:1.0
+---
+M1: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [ 550.5, 0., 320.25, 0., 551.5, 240.75, 0., 0., 1. ]
+D1: !!opencv-matrix
+   rows: 1
+   cols: 5
+   dt: d
+   data: [ -0.29, 0.075, 0.0002, -0.0001, 0.01 ]
+M2: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [ 600., 0., 330., 0., 601., 250., 0., 0., 1. ]
+D2: !!opencv-matrix
+   rows: 1
+   cols: 14
+   dt: d
+   data: [ -0.1, 0.2, 0., 0., 0., 0., 0., 0.3, 0., 0., 0., 0., 0., 0. ]
+)";
+
+/// As OpenCV's sample stereo_calib writes intrinsics.yml, and others do under other names.
+TEST_F(CameraFile, ReadsACameraOfAStereoFile) {
+  std::string named = kStereo;
+  for (const auto& [from, to] : {std::pair("M1", "cameraMatrix_left"),
+                                 {"D1", "dist_coeffs_left"},
+                                 {"M2", "cameraMatrix_right"},
+                                 {"D2", "dist_coeffs_right"}}) {
+    named = replaced(named, from, to);
+  }
+  for (const auto& [text, first, second] :
+       {std::tuple(std::string(kStereo), "1", "2"), {named, "left", "right"}}) {
+    const CameraInfo one = read(text, first);
+    EXPECT_THAT(diagnostics_.errors, IsEmpty());
+    EXPECT_EQ(one.k, kMatrix);
+    EXPECT_THAT(one.d, ElementsAre(-0.29, 0.075, 0.0002, -0.0001, 0.01));
+    EXPECT_EQ(one.distortion_model, "plumb_bob");
+    const CameraInfo two = read(text, second);
+    EXPECT_THAT(diagnostics_.errors, IsEmpty());
+    EXPECT_EQ(two.k, (K{600, 0, 330, 0, 601, 250, 0, 0, 1}));
+    EXPECT_EQ(two.distortion_model, "rational_polynomial");
+    EXPECT_EQ(two.d.at(7), 0.3);
+  }
+  EXPECT_THAT(refusal(kStereo),
+              HasSubstr("c.yaml: there are several cameras, 1, 2; choose one: c.yaml:1"));
+  EXPECT_THAT(refusal(kStereo, "3"), HasSubstr("c.yaml: there is no camera '3'"));
+}
+
+/// The lens of the second camera must not be lost either.
+TEST_F(CameraFile, AStereoCameraWithItsDistortionUnderAnotherNameIsRefused) {
+  EXPECT_THAT(refusal(replaced(kStereo, "D1:", "Dx1:"), "1"),
+              HasSubstr("c.yaml:8: unknown key 'Dx1'"));
+}
+
+TEST_F(CameraFile, ReadsOpencvXml) {
+  const std::string xml = R"(<?xml version="1.0"?>
+<opencv_storage>
+<calibration_time>"Tue 01 Jan 2030 10:00:00"</calibration_time>
+<image_width>640</image_width>
+<image_height>480</image_height>
+<camera_matrix type_id="opencv-matrix">
+  <rows>3</rows>
+  <cols>3</cols>
+  <dt>d</dt>
+  <data>
+    5.505e+02 0. 3.2025e+02 0. 5.515e+02 240.75 0. 0. 1.</data></camera_matrix>
+<distortion_coefficients type_id="opencv-matrix">
+  <rows>5</rows>
+  <cols>1</cols>
+  <dt>d</dt>
+  <data>
+    -0.29 0.075 0.0002 -0.0001 0.01</data></distortion_coefficients>
+</opencv_storage>
+)";
+  const CameraInfo camera = read(xml), yaml = read(kOpencv);
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_EQ(camera.k, yaml.k);
+  EXPECT_EQ(camera.d, yaml.d);
+  EXPECT_EQ(camera.width, 640);
+  EXPECT_EQ(camera.height, 480);
+  EXPECT_EQ(camera.distortion_model, "plumb_bob");
+  EXPECT_THAT(refusal(replaced(xml, "240.75 0.", "240.75 x")),
+              HasSubstr("c.yaml:10: camera_matrix: 'x' is not"));
+  EXPECT_THAT(refusal(replaced(xml, "</opencv_storage>", "")),
+              HasSubstr("c.yaml:18: malformed XML"));
+  EXPECT_THAT(refusal("<robot name='a'/>"),
+              HasSubstr("a camera file of OpenCV in XML begins with <opencv_storage>"));
+  EXPECT_THAT(refusal(replaced(replaced(xml, "distortion_coefficients type", "lens type"),
+                               "</distortion_coefficients>", "</lens>")),
+              HasSubstr("unknown key 'lens'"));
+}
+
 }  // namespace
 }  // namespace kinecal

@@ -7,13 +7,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <optional>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/cameras/camera_places.ipp"
+#include "kinecal/config/cameras/known_cameras.ipp"
 #include "kinecal/config/cameras/start_cameras.hpp"
 #include "kinecal/config/choose_images.hpp"
 #include "kinecal/config/choose_lenses.hpp"
@@ -24,9 +29,9 @@
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/sensors/lenses/lens_names.hpp"
 #include "kinecal/solve/calibrate.hpp"
-#include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/systematic/folded_lens.hpp"
+#include "kinecal/trust/uncertainty/projection_map.hpp"
 
 namespace kinecal {
 
@@ -53,13 +58,32 @@ namespace {
   return names;
 }
 
+/// A lens with as many of its coefficients as are free; the others are zero.
+struct LensForm {
+  std::string_view name;
+  std::string_view free;  ///< "k1 k2", in the order of its coefficients, one a word
+
+  [[nodiscard]] std::set<std::string> coefficients() const {
+    std::istringstream words{std::string(free)};
+    return {std::istream_iterator<std::string>(words), {}};
+  }
+  /// "plumb_bob k1 k2 p1 p2", "plumb_bob without distortion"
+  [[nodiscard]] std::string text() const {
+    return std::string(name) + " " + std::string(free.empty() ? "without distortion" : free);
+  }
+};
+
 /// The configuration with a lens whose intrinsics are free.
-/// @param held  a coefficient that is not; empty: all are
-[[nodiscard]] Config with_lens(Config config, const ModelConfig& camera, const std::string& lens,
-                               const std::string& held) {
+[[nodiscard]] Config with_lens(Config config, const ModelConfig& camera, const LensForm& form) {
   const std::set<std::string> others = names_with_lenses(camera);
-  std::set<std::string> free = names_with_lens(camera, lens);
-  if (!held.empty()) free.erase(parameter_name(camera.param_name, held));
+  const std::string lens(form.name);
+  std::set<std::string> free;
+  for (const std::string_view own : {"fx", "fy", "cx", "cy"}) {
+    free.insert(parameter_name(camera.param_name, own));
+  }
+  for (const std::string& own : form.coefficients()) {
+    free.insert(parameter_name(camera.param_name, own));
+  }
   for (StepConfig& step : config.steps) {
     bool has_camera = false;
     for (ModelConfig& model : step.models) {
@@ -131,6 +155,14 @@ void take_camera(const std::string& camera, const std::vector<Sample>& from,
 
 // A lens that find_lenses() has tried, and whether its error on held-out samples is smaller than that of another.
 
+constexpr double kFar =
+    3.0;  // pixels: corners that are farther off count less, so that no view decides alone
+
+/// The square of a distance; beyond kFar as under its loss.
+[[nodiscard]] double bounded_square(double distance) {
+  return distance <= kFar ? distance * distance : kFar * (2.0 * distance - kFar);
+}
+
 /// A mean, and whether it is above zero for certain.
 class SureMean {
  public:
@@ -142,9 +174,9 @@ class SureMean {
   [[nodiscard]] bool is_positive() const {
     if (count_ < 3.0) return false;
     const double mean = sum_ / count_, variance = squared_ / count_ - mean * mean;
-    // Chance is below 5 %: Student's t, to 2 % of its value.
+    // Chance is below 1 %: Student's t, to 3 % of its value from four values on.
     const double freedom = count_ - 1.0;
-    const double sure = 1.645 * (1.0 + 1.0 / freedom + 1.1 / (freedom * freedom));
+    const double sure = 2.326 * (1.0 + 1.6 / freedom + 4.0 / (freedom * freedom));
     return mean > sure * std::sqrt(std::max(0.0, variance) / freedom);
   }
 
@@ -154,31 +186,43 @@ class SureMean {
 
 /// A lens that was tried.
 struct TriedLens {
-  std::string name;
-  std::string held;  ///< a coefficient that is zero and held; empty: none
+  LensForm form;
   Config config;
   std::vector<Sample> samples;
-  std::vector<double> squares = {};  ///< held_out_squares()
-  std::string fault = {};            ///< why it is out; empty: it is not
-  bool is_wrong_input = false;       ///< the fault is an error with its place, not one of this lens
-  std::string unknown = {};          ///< a parameter that the samples do not determine; empty: none
-  std::string hardly = {};           ///< a parameter that the samples hardly determine; empty: none
+  std::vector<double> squares =
+      {};                       ///< mean bounded_square() of each sample, held out; 0: no features
+  double error = 0.0;           ///< root of that of all features, pixels
+  double fitted = 0.0;          ///< typical distance of all features from the fit, pixels
+  double known = HUGE_VAL;      ///< +- of a pixel where features are, pixels
+  bool has_focal = true;        ///< false: samples do not determine the focal length at the axis
+  bool is_traded = false;       ///< fx is not known; what it and coefficients make together is
+  std::string fault = {};       ///< why it is out; empty: it is not
+  bool is_wrong_input = false;  ///< the fault is an error with its place, not one of this lens
 
-  /// "plumb_bob without k3"
-  [[nodiscard]] std::string text() const { return held.empty() ? name : name + " without " + held; }
-  /// Root of the mean of the squared distances of features, pixels.
-  [[nodiscard]] double error() const {
-    double sum = 0.0, count = 0.0;
-    for (const double square : squares) {
-      sum += square;
-      count += square > 0.0 ? 1.0 : 0.0;
+  /// Sets the error.
+  void set(const std::vector<std::vector<double>>& distances) {
+    double all = 0.0, features = 0.0;
+    for (const std::vector<double>& of_sample : distances) {
+      double sum = 0.0;
+      for (const double distance : of_sample) sum += bounded_square(distance);
+      const auto count = static_cast<double>(of_sample.size());
+      squares.push_back(count > 0.0 ? sum / count : 0.0);
+      all += sum;
+      features += count;
     }
-    return count > 0.0 ? std::sqrt(2.0 * sum / count) : 0.0;  // of both coordinates
+    error = std::sqrt(all / std::max(1.0, features));
   }
-  /// True if its error is significantly smaller than that of another one: by the differences of mean squares, or by
-  /// their ratios, which one view that is far off under the other lens does not blur.
+  /// True if its pixels are known as well as its corners are, and fx is.
+  [[nodiscard]] bool is_known() const {
+    return known <= std::max(ProjectionMap::kEnough, error) && !is_traded;
+  }
+  /// True if its error is smaller than that of another one: by more than 2 %, or by more than 1 % and beyond chance, by the
+  /// differences of samples' mean squares, or by their ratios, which one sample that is far off under the other lens
+  /// does not blur.
   [[nodiscard]] bool beats(const TriedLens& other) const {
-    if (!(error() < other.error())) return false;
+    constexpr double kAlike = 1.01, kClear = 1.02;
+    if (kClear * error < other.error) return true;
+    if (!(kAlike * error < other.error)) return false;
     SureMean differences, ratios;
     for (std::size_t s = 0; s < squares.size(); ++s) {
       if (!(squares[s] > 0.0 && other.squares[s] > 0.0)) continue;
@@ -189,14 +233,17 @@ struct TriedLens {
   }
 };
 
-/// "plumb_bob 22.7 px, equidistant 0.84 px, double_sphere: folds over"
+/// "plumb_bob k1 22.7 px, equidistant k1 k2 0.84 px, double_sphere xi alpha: folds over"
 [[nodiscard]] std::string errors_text(const std::vector<TriedLens>& tried) {
   std::string text;
   for (const TriedLens& lens : tried) {
     text += text.empty() ? "" : ", ";
-    text += lens.fault.empty() ? fmt::format("{} {:.4g} px", lens.text(), lens.error())
-                               : fmt::format("{}: {}", lens.text(), lens.fault);
-    if (!lens.hardly.empty()) text += fmt::format(" (hardly determines {})", lens.hardly);
+    text += lens.fault.empty() ? fmt::format("{} {:.4g} px", lens.form.text(), lens.error)
+                               : fmt::format("{}: {}", lens.form.text(), lens.fault);
+    if (lens.fault.empty() && !lens.is_known()) {
+      text += lens.is_traded ? " (its coefficients make up for fx)"
+                             : fmt::format(" (its pixels are known to {:.2g} px only)", lens.known);
+    }
   }
   return text;
 }
@@ -210,10 +257,9 @@ void report_faults(const ModelConfig& camera, const std::vector<TriedLens>& trie
     diagnostics.errors.push_back(wrong->fault);
     return;
   }
-  const bool is_flat = std::any_of(tried.begin(), tried.end(), [&](const TriedLens& lens) {
-    return lens.unknown == parameter_name(camera.param_name, "fx") ||
-           lens.unknown == parameter_name(camera.param_name, "fy");
-  });
+  const auto without_focal = std::count_if(tried.begin(), tried.end(),
+                                           [](const TriedLens& lens) { return !lens.has_focal; });
+  const bool is_flat = 2 * without_focal >= std::ssize(tried);  // one or two do so by chance
   const bool is_same = std::all_of(tried.begin(), tried.end(), [&](const TriedLens& lens) {
     return lens.fault == tried.front().fault;
   });
@@ -228,50 +274,50 @@ void report_faults(const ModelConfig& camera, const std::vector<TriedLens>& trie
                             camera.name, faults));
 }
 
-/// The lenses from the simplest on: that of ordinary cameras, fisheyes, polynomials with many terms.  Each with a
-/// coefficient that may be superfluous, or none.
-constexpr std::array<std::array<std::string_view, 2>, 6> kLenses = {
-    {{PlumbBob::kName, "k3"},
-     {PlumbBob::kName, ""},
-     {DoubleSphere::kName, ""},
-     {Equidistant::kName, ""},
-     {RationalPolynomial::kName, ""},
-     {ThinPrism::kName, ""}}};
+/// The lenses in the order in which they are preferred: that of ordinary cameras, which all programs read, with as few
+/// coefficients as needed; fisheyes; polynomials with many terms.
+constexpr std::array<LensForm, 10> kLenses = {
+    {{PlumbBob::kName, ""},
+     {PlumbBob::kName, "k1"},
+     {PlumbBob::kName, "k1 k2"},
+     {PlumbBob::kName, "k1 k2 p1 p2"},
+     {PlumbBob::kName, "k1 k2 p1 p2 k3"},
+     {Equidistant::kName, "k1 k2"},
+     {DoubleSphere::kName, "xi alpha"},
+     {Equidistant::kName, "k1 k2 k3 k4"},
+     {RationalPolynomial::kName, "k1 k2 p1 p2 k3 k4 k5 k6"},
+     {ThinPrism::kName, "k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4"}}};
 
-/// The parameters of a camera that samples do not determine, or hardly.
-struct Undetermined {
-  std::string not_at_all, hardly;  ///< the first of each; empty: absent
-};
-
-[[nodiscard]] Undetermined undetermined(const CalibrationStep& step, ParameterValues values,
-                                        const ParameterTable& table,
-                                        const std::vector<Sample>& samples,
-                                        const std::set<std::string>& of) {
-  constexpr double kTakesPart = 0.01;
-  const Assessment found = assess(*step.problem, step.free, values, samples, {.folds = 0});
-  Undetermined all;
-  for (const Combination& changes : found.observability.unobservable) {
-    for (const auto& [parameter, factor] : changes) {
-      const bool takes_part = std::abs(factor) > kTakesPart && of.contains(table[parameter].name);
-      if (takes_part && all.not_at_all.empty()) all.not_at_all = table[parameter].name;
-    }
+/// Sets how well pixels are known.
+void set_known(const CalibrationStep& step, ParameterValues values, const std::string& camera,
+               TriedLens& lens) {
+  const AnyProblem& problem = *step.problem;
+  const auto evaluator = problem.evaluator(step.free, 1);
+  const LinearFit fit =
+      linear_fit(*evaluator, values, determined_coordinates(problem, step.free, values));
+  const Eigen::MatrixXd inverse = Spectrum(information(fit, fit.loss)).pseudo_inverse();
+  const std::vector<BlockNoise> noise = estimate_noise(problem, fit, inverse);
+  const PoseGroups poses = pose_groups(problem, lens.samples);
+  const Uncertainty known =
+      uncertainty(problem, fit, noise, poses, prior_variance(noise) * fit.prior_hessian);
+  for (const ProjectionMap& map :
+       projection_maps({*evaluator, step.free, values, fit, known, lens.samples, poses})) {
+    if (map.sensor != camera) continue;
+    lens.known = map.deviations()[1];
+    lens.is_traded = map.number(ProjectionMap::kAxisFocal) != nullptr;
+    lens.has_focal = !(map.focal_deviation() > ProjectionMap::kKnownFocal);
   }
-  for (const int parameter : found.weak.parameters) {
-    if (of.contains(table[parameter].name) && all.hardly.empty()) {
-      all.hardly = table[parameter].name;
-    }
-  }
-  return all;
 }
 
-/// A view with corners that are far off must not decide: each counts less beyond a few pixels.
-void bound_outliers(Config& config) {
-  constexpr double kFar = 3.0;  // pixels, or sigma
+/// Bounds corners that are far off.
+void bound_outliers(Config& config, const std::vector<Sample>& samples) {
   for (StepConfig& step : config.steps) {
     for (BlockConfig& block : step.error_blocks) {
       const BlockEntry* entry = entry_of(block);
       const bool is_of_pixels = entry != nullptr && entry->read_as == PointToPixel::kType;
-      if (is_of_pixels && block.loss.type == "none") block.loss = {"huber", kFar};
+      if (!is_of_pixels || block.loss.type != "none") continue;
+      const double sigma = stated_sigma(block, step, samples).value_or(1.0);
+      block.loss = {"huber", kFar / sigma};
     }
   }
 }
@@ -279,10 +325,18 @@ void bound_outliers(Config& config) {
 /// Calibrates a lens and predicts what was held out.
 void calibrate_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
   Diagnostics diagnostics;
-  bound_outliers(lens.config);
+  bound_outliers(lens.config, lens.samples);
   start_cameras(lens.config, robot, lens.samples, diagnostics);
   choose_lenses(lens.config, lens.samples, diagnostics);
   choose_images(lens.config, robot, lens.samples, diagnostics);
+  ModelConfig with_form = camera;
+  with_form.lens = lens.form.name;
+  for (Sample& sample : lens.samples) {
+    for (Observation& seen : sample.observations) {
+      if (seen.sensor == camera.name && seen.camera)
+        drop_held(lens.config, with_form, *seen.camera);
+    }
+  }
   constexpr int kEnough = 100;  // iterations: a lens that does not fit is not worth more
   for (StepConfig& step : lens.config.steps) {
     step.max_num_iterations = std::min(step.max_num_iterations, kEnough);
@@ -307,22 +361,36 @@ void calibrate_lens(const Robot& robot, const ModelConfig& camera, TriedLens& le
     lens.fault = fmt::format("folds over {:.0f} px from the center", folds.front().radius);
     return;
   }
-  const Undetermined unknown =
-      undetermined(last, values, result.table, lens.samples, names_with_lens(camera, lens.name));
-  if (!unknown.not_at_all.empty()) {
-    lens.unknown = unknown.not_at_all;
-    lens.fault = "samples do not determine " + lens.unknown;
+  for (const BlockStatistics& block : result.blocks) {
+    if (block.unit == "px") lens.fitted = std::max(lens.fitted, block.after.median);
+  }
+  set_known(last, values, camera.name, lens);
+  if (!lens.has_focal || !std::isfinite(lens.known)) {
+    lens.fault = lens.has_focal ? "samples do not determine its pixels"
+                                : "samples do not determine its focal length";
     return;
   }
-  lens.hardly = unknown.hardly;
   try {
-    lens.squares = held_out_squares(*last.problem, last.free, values, lens.samples);
+    lens.set(held_out_distances(*last.problem, last.free, values, lens.samples, camera.name));
   } catch (const std::domain_error&) {
     lens.fault = "samples without a fifth of them do not determine it";
   }
 }
 
-/// The same; a lens under which the samples make no sense is out.
+/// The samples of a camera of which a lens is begun once, for all of its forms: with all of its coefficients.
+/// @param alone  without_others()
+[[nodiscard]] std::vector<Sample> begun(const Config& alone, const Robot& robot,
+                                        const ModelConfig& camera, std::string_view lens,
+                                        std::vector<Sample> samples) {
+  const auto whole = std::find_if(kLenses.rbegin(), kLenses.rend(),
+                                  [&](const LensForm& form) { return form.name == lens; });
+  Config config = with_lens(alone, camera, *whole);
+  Diagnostics again;  // they come again where each form is tried
+  start_cameras(config, robot, samples, again);
+  return samples;
+}
+
+/// calibrate_lens(); a lens under which the samples make no sense is out.
 void try_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
   try {
     calibrate_lens(robot, camera, lens);
@@ -333,18 +401,62 @@ void try_lens(const Robot& robot, const ModelConfig& camera, TriedLens& lens) {
   }
 }
 
-/// The first lens that no other one beats; nullptr if none fits.
-/// @param weak  also those with a parameter that samples hardly determine
-[[nodiscard]] const TriedLens* best_of(const std::vector<TriedLens>& tried, bool weak) {
-  const auto fits = [&](const TriedLens& lens) {
-    return lens.fault.empty() && (weak || lens.hardly.empty());
+/// Tries each lens with all of its coefficients; then with fewer, unless it does not fit even with more.
+/// @param alone  without_others()
+/// @returns  in the order of kLenses
+[[nodiscard]] std::vector<TriedLens> tried_lenses(const Config& alone, const Robot& robot,
+                                                  const ModelConfig& camera,
+                                                  const std::vector<Sample>& samples) {
+  constexpr double kHopeless = 1.5;
+  std::array<std::optional<TriedLens>, kLenses.size()> tried;
+  std::map<std::string_view, std::vector<Sample>> begun_with;
+  double least = HUGE_VAL;
+  const auto attempt = [&](std::size_t i) {
+    const LensForm& form = kLenses[i];
+    if (!begun_with.contains(form.name)) {
+      begun_with.emplace(form.name, begun(alone, robot, camera, form.name, samples));
+    }
+    tried[i] = TriedLens{form, with_lens(alone, camera, form), begun_with.at(form.name)};
+    try_lens(robot, camera, *tried[i]);
+    if (tried[i]->fault.empty()) least = std::min(least, tried[i]->error);
   };
-  const auto best = std::find_if(tried.begin(), tried.end(), [&](const TriedLens& one) {
-    return fits(one) && std::none_of(tried.begin(), tried.end(), [&](const TriedLens& other) {
-             return fits(other) && other.beats(one);
-           });
-  });
-  return best == tried.end() ? nullptr : &*best;
+  // The form with the next coefficients; the size if this one has all.
+  const auto larger = [](std::size_t i) {
+    const auto begin = kLenses.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto next = std::find_if(begin + 1, kLenses.end(),
+                                   [&](const LensForm& form) { return form.name == begin->name; });
+    return static_cast<std::size_t>(next - kLenses.begin());
+  };
+  for (std::size_t i = 0; i < kLenses.size(); ++i) {
+    if (larger(i) == kLenses.size()) attempt(i);
+  }
+  for (std::size_t i = kLenses.size(); i-- > 0;) {
+    const std::size_t next = larger(i);
+    if (next == kLenses.size() || !tried[next]) continue;
+    const bool is_hopeless = tried[next]->fitted > kHopeless * least;
+    if (!is_hopeless) attempt(i);
+  }
+  std::vector<TriedLens> all;
+  for (std::optional<TriedLens>& lens : tried) {
+    if (lens) all.push_back(*std::move(lens));
+  }
+  return all;
+}
+
+/// The first lens that no other one beats; of those that are known, if there are any; nullptr if none fits.
+[[nodiscard]] const TriedLens* best_of(const std::vector<TriedLens>& tried) {
+  for (const bool known : {true, false}) {
+    const auto fits = [&](const TriedLens& lens) {
+      return lens.fault.empty() && lens.is_known() == known;
+    };
+    const auto first = std::find_if(tried.begin(), tried.end(), [&](const TriedLens& one) {
+      return fits(one) && std::none_of(tried.begin(), tried.end(), [&](const TriedLens& other) {
+               return fits(other) && other.beats(one);
+             });
+    });
+    if (first != tried.end()) return &*first;
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -355,15 +467,10 @@ void find_lenses(Config& config, const Robot& robot, std::vector<Sample>& sample
   const Config given = config;
   for (const ModelConfig& camera : detail::models_of(given)) {
     if (camera.lens != kAnyLens) continue;
-    std::vector<detail::TriedLens> tried;
     const Config alone = detail::without_others(given, robot, camera);
-    for (const auto& [lens, superfluous] : detail::kLenses) {
-      const std::string name(lens), held(superfluous);
-      tried.push_back({name, held, detail::with_lens(alone, camera, name, held), samples});
-      detail::try_lens(robot, camera, tried.back());
-    }
-    const detail::TriedLens* best = detail::best_of(tried, false);
-    if (best == nullptr) best = detail::best_of(tried, true);
+    const std::vector<detail::TriedLens> tried =
+        detail::tried_lenses(alone, robot, camera, samples);
+    const detail::TriedLens* best = detail::best_of(tried);
     if (best == nullptr) {
       detail::report_faults(camera, tried, diagnostics);
       continue;
@@ -371,8 +478,8 @@ void find_lenses(Config& config, const Robot& robot, std::vector<Sample>& sample
     diagnostics.note(
         camera.place,
         fmt::format("sensor '{}': lens by the error on views held out: {}: taken as {}",
-                    camera.name, detail::errors_text(tried), best->text()));
-    config = detail::with_lens(config, camera, best->name, best->held);
+                    camera.name, detail::errors_text(tried), best->form.text()));
+    config = detail::with_lens(config, camera, best->form);
     detail::take_camera(camera.name, best->samples, samples);
   }
 }

@@ -1,5 +1,5 @@
-// Cameras of which something is known, and where the targets are that they see: for start_cameras.cpp and
-// later_cameras.cpp.
+// Cameras of which something is known, and where the targets are that they see: for start_cameras.cpp, find_lenses.cpp
+// and later_cameras.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,9 +9,27 @@
 #include <vector>
 
 #include "kinecal/config/cameras/target_poses.ipp"
+#include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/sensors/lenses/lens.hpp"
 
 namespace kinecal::detail {
+
+/// True if a parameter of a camera is free in some step.
+[[nodiscard]] inline bool is_free(const Config& config, const std::string& name) {
+  return std::any_of(config.steps.begin(), config.steps.end(), [&](const StepConfig& step) {
+    return std::any_of(step.free_params.begin(), step.free_params.end(),
+                       [&](const FreeParamConfig& free) { return free.name == name; });
+  });
+}
+
+/// Makes the coefficients zero that are held: nothing is known of them.
+inline void drop_held(const Config& config, const ModelConfig& camera, CameraInfo& info) {
+  const std::shared_ptr<const AnySensor> sensor = sensor_of(camera);
+  const auto coefficients = sensor->parameters().subspan(kIntrinsics);
+  for (std::size_t i = 0; i < std::min(coefficients.size(), info.d.size()); ++i) {
+    if (!is_free(config, parameter_name(camera.param_name, coefficients[i].name))) info.d[i] = 0.0;
+  }
+}
 
 /// The camera_info of a camera in some sample; nullptr if none has one.
 [[nodiscard]] inline const CameraInfo* info_of(const std::string& camera,

@@ -134,28 +134,11 @@ void check_agreement(const Config& config, const Robot& robot, const std::vector
   return {box.min().x() + box.max().x() + 1.0, box.min().y() + box.max().y() + 1.0};
 }
 
-/// True if a parameter of a camera is free in some step.
-[[nodiscard]] bool is_free(const Config& config, const std::string& name) {
-  return std::any_of(config.steps.begin(), config.steps.end(), [&](const StepConfig& step) {
-    return std::any_of(step.free_params.begin(), step.free_params.end(),
-                       [&](const FreeParamConfig& free) { return free.name == name; });
-  });
-}
-
 /// False if a camera was not found: no lens images the target as it was seen.
 [[nodiscard]] bool is_finite(const CameraInfo& info) {
   const auto number = [](double value) { return std::isfinite(value); };
   return std::all_of(info.k.begin(), info.k.end(), number) &&
          std::all_of(info.d.begin(), info.d.end(), number);
-}
-
-/// Makes the coefficients zero that are held: nothing is known of them.
-void drop_held(const Config& config, const ModelConfig& camera, CameraInfo& info) {
-  const std::shared_ptr<const AnySensor> sensor = sensor_of(camera);
-  const auto coefficients = sensor->parameters().subspan(kIntrinsics);
-  for (std::size_t i = 0; i < std::min(coefficients.size(), info.d.size()); ++i) {
-    if (!is_free(config, parameter_name(camera.param_name, coefficients[i].name))) info.d[i] = 0.0;
-  }
 }
 
 /// True if all intrinsics of a camera are free in some step.

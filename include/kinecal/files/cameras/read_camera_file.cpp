@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include "kinecal/files/cameras/camera_fields.ipp"
 #include "kinecal/files/cameras/image_part.hpp"
+#include "kinecal/files/xml/xml_text.ipp"
 #include "kinecal/files/yaml/config_map.hpp"
 #include "kinecal/files/yaml/yaml_node.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
@@ -189,7 +191,8 @@ bool refuse_lost_distortion(ConfigMap& file, const std::vector<std::string>& kno
 //               camera_matrix, distortion_coefficients.  Case and underscores of keys vary, and so does
 //               the name of the distortion: see read_camera_file.cpp.  Four coefficients are plumb_bob
 //               with k3 = 0, five plumb_bob, eight, twelve or fourteen rational_polynomial; with
-//               fisheye_model: 1, four are equidistant.
+//               fisheye_model: 1, four are equidistant.  The same in XML, <opencv_storage>.  Stereo files have
+//               M1 D1 M2 D2 (sample stereo_calib), also cameraMatrix1, K_left and so on: one is chosen by its name.
 //               Source: OpenCV documentation, FileStorage; calib3d, distortion coefficients.
 
 /// Warns if a camera_info describes only a part of the image.
@@ -340,6 +343,96 @@ void doubt_no_distortion(ConfigMap& file, const CameraKeys& known, const std::st
   return entry.value.is_map() && entry.value.tag.ends_with("opencv-matrix");
 }
 
+/// The same of OpenCV's XML: elements are keys, type_id is the tag, a text of several numbers is a list.
+[[nodiscard]] YamlNode node_of_xml(const XmlText& file, pugi::xml_node element) {
+  YamlNode node;
+  node.line = file.place(element).line;
+  if (const std::string type = element.attribute("type_id").value(); !type.empty()) {
+    node.tag = "!!" + type;
+  }
+  for (const pugi::xml_node child : element.children()) {
+    if (child.type() != pugi::node_element) continue;
+    YamlNode& key = node.keys.emplace_back();
+    key.kind = YamlNode::Kind::scalar;
+    key.line = file.place(child).line;
+    key.text = child.name();
+    node.items.push_back(node_of_xml(file, child));
+  }
+  if (!node.keys.empty()) {
+    node.kind = YamlNode::Kind::map;
+    return node;
+  }
+  std::istringstream words(element.text().get());
+  for (std::string word; words >> word;) {
+    YamlNode& item = node.items.emplace_back();
+    item.kind = YamlNode::Kind::scalar;
+    item.line = node.line;
+    item.text = word;
+  }
+  if (node.items.size() == 1 && std::string_view(element.name()) != "data") {
+    return std::move(node.items.front());
+  }
+  node.kind = node.items.empty() ? YamlNode::Kind::null : YamlNode::Kind::list;
+  return node;
+}
+
+// Stereo files of OpenCV: M1 D1 M2 D2 of its sample stereo_calib, cameraMatrix1, K_left and so on.
+
+/// A key of one of several cameras.
+struct CameraOfKey {
+  std::string camera;  ///< "1", "left"; empty: of none
+  std::string key;     ///< "camera_matrix": what it is, as a file of one camera calls it
+};
+
+[[nodiscard]] CameraOfKey camera_of_key(const std::string& key) {
+  const std::string plain = plain_key(key);
+  for (const std::string_view camera : {"1", "2", "3", "4", "left", "right", "l", "r"}) {
+    for (const bool is_last : {true, false}) {
+      if (plain.size() <= camera.size()) continue;
+      if (!(is_last ? plain.ends_with(camera) : plain.starts_with(camera))) continue;
+      const std::string base =
+          is_last ? plain.substr(0, plain.size() - camera.size()) : plain.substr(camera.size());
+      static constexpr std::array<std::string_view, 6> kMatrices = {
+          "m", "k", "cameramatrix", "mtx", "intrinsics", "intrinsicmatrix"};
+      const std::string name(camera);
+      if (std::find(kMatrices.begin(), kMatrices.end(), base) != kMatrices.end()) {
+        return {name, "camera_matrix"};
+      }
+      if (is_distortion_key(base)) return {name, "distortion_coefficients"};
+      if (base == "p" || base == "projectionmatrix") return {name, "projection_matrix"};
+      if (base == "r" || base == "rectificationmatrix") return {name, "rectification_matrix"};
+    }
+  }
+  return {};
+}
+
+/// Names of the cameras of a stereo file; empty: it has one camera.
+[[nodiscard]] std::vector<std::string> stereo_cameras(const YamlNode& document) {
+  std::vector<std::string> cameras;
+  for (std::size_t i = 0; i < document.keys.size(); ++i) {
+    const auto [camera, key] = camera_of_key(document.keys[i].text);
+    const bool is_matrix = document.items[i].tag.ends_with("opencv-matrix");
+    const bool is_new = std::find(cameras.begin(), cameras.end(), camera) == cameras.end();
+    if (is_matrix && key == "camera_matrix" && is_new) cameras.push_back(camera);
+  }
+  return cameras;
+}
+
+/// One of the cameras of a stereo file, under the keys of a file of one camera.
+[[nodiscard]] YamlNode one_of_stereo(const YamlNode& document, const std::string& camera) {
+  YamlNode one = document;
+  one.keys.clear();
+  one.items.clear();
+  for (std::size_t i = 0; i < document.keys.size(); ++i) {
+    const CameraOfKey of = camera_of_key(document.keys[i].text);
+    if (!of.camera.empty() && of.camera != camera) continue;
+    one.keys.push_back(document.keys[i]);
+    one.items.push_back(document.items[i]);
+    if (!of.camera.empty()) one.keys.back().text = of.key;
+  }
+  return one;
+}
+
 /// All keys of a file that equal a wanted one except for case and underscores.
 [[nodiscard]] CameraKeys opencv_keys(const ConfigMap& file, const CameraKeys& wanted) {
   CameraKeys keys;
@@ -426,7 +519,13 @@ void doubt_no_distortion(ConfigMap& file, const CameraKeys& known, const std::st
 
 /// The map of a camera file; of several messages, the first.
 [[nodiscard]] YamlNode camera_document(const std::string& path) {
-  for (YamlNode& document : parse_yaml(without_opencv_header(read_yaml_text(path)), path)) {
+  std::string text = read_yaml_text(path);
+  const std::size_t first = text.find_first_not_of("\xEF\xBB\xBF \t\r\n");
+  if (first != std::string::npos && text[first] == '<') {
+    const XmlText xml(std::move(text), path, {"a camera file of OpenCV in XML", "opencv_storage"});
+    return node_of_xml(xml, xml.root());
+  }
+  for (YamlNode& document : parse_yaml(without_opencv_header(std::move(text)), path)) {
     if (document.is_map()) return std::move(document);
     if (!document.is_null()) break;
   }
@@ -438,7 +537,22 @@ void doubt_no_distortion(ConfigMap& file, const CameraKeys& known, const std::st
 
 CameraInfo read_camera_file(const std::string& path, Diagnostics& diagnostics,
                             const std::string& which) {
-  const detail::YamlNode document = detail::camera_document(path);
+  detail::YamlNode document = detail::camera_document(path);
+  std::string left = which;  // of the name, for a file of one camera
+  if (const std::vector<std::string> cameras = detail::stereo_cameras(document); !cameras.empty()) {
+    const bool is_known = std::find(cameras.begin(), cameras.end(), which) != cameras.end();
+    if (!is_known && !(which.empty() && cameras.size() == 1)) {
+      diagnostics.error({path, 0},
+                        which.empty()
+                            ? fmt::format("there are several cameras, {}; choose one: {}:{}",
+                                          fmt::join(cameras, ", "), path, cameras.front())
+                            : "there is no camera '" + which + "'" + did_you_mean(which, cameras) +
+                                  fmt::format("; there are {}", fmt::join(cameras, ", ")));
+      return {};
+    }
+    document = detail::one_of_stereo(document, which.empty() ? cameras.front() : which);
+    left.clear();
+  }
   detail::ConfigMap file(document, {path, 0}, "", diagnostics);
   const std::size_t errors = diagnostics.errors.size();
   const auto any = [&](bool (*is)(const detail::ConfigEntry&)) {
@@ -447,7 +561,7 @@ CameraInfo read_camera_file(const std::string& path, Diagnostics& diagnostics,
   CameraInfo camera;
   if (any(detail::is_kalibr_camera)) {
     camera = detail::read_camchain(file, which);
-  } else if (!which.empty()) {
+  } else if (!left.empty()) {
     file.error({path, 0},
                "has a single camera and there is no '" + which + "'; leave the name out");
   } else if (any(detail::is_opencv_matrix)) {

@@ -11,9 +11,9 @@
 namespace kinecal {
 
 /// Reads a camera.
-/// @param path         a YAML file
+/// @param path         a YAML file, or one of OpenCV in XML
 /// @param diagnostics  receives errors and warnings, each with "file:line: "
-/// @param which        one of several cameras in a file: cam1
+/// @param which        one of several cameras in a file: cam1; of M1 D1 M2 D2: 1 or 2
 /// @return             incomplete if there are errors; z_offset 0 and z_scaling 1
 /// @throws InputError  if the file cannot be read or is not YAML
 [[nodiscard]] CameraInfo read_camera_file(const std::string& path, Diagnostics& diagnostics,

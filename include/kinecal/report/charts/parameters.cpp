@@ -181,6 +181,7 @@ void draw_forest_row(Drawing& drawing, const ForestRow& row, const PlotArea& are
 std::vector<Chart> parameter_charts(const ReportData& data, const std::string& change) {
   std::vector<std::string> units;
   for (const ReportedParameter& parameter : data.parameters) {
+    if (parameter.note == kInCamera) continue;
     if (std::find(units.begin(), units.end(), parameter.unit) == units.end()) {
       units.push_back(parameter.unit);
     }
@@ -189,6 +190,7 @@ std::vector<Chart> parameter_charts(const ReportData& data, const std::string& c
   for (const std::string& unit : units) {
     std::vector<detail::ForestRow> rows;
     for (const ReportedParameter& parameter : data.parameters) {
+      if (parameter.note == kInCamera) continue;
       if (parameter.unit == unit) rows.push_back(detail::forest_row(parameter));
     }
     charts.push_back(detail::forest_chart(rows, unit, change));

@@ -24,7 +24,7 @@
 #include "kinecal/files/poses/pose_table.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/text/nearest_name.hpp"
-#include "kinecal/tools/cameras/camera_start.hpp"
+#include "kinecal/config/cameras/camera_start.hpp"
 #include "kinecal/tools/init/hand_eye_fit.hpp"
 #include "kinecal/tools/init/table_columns.ipp"
 

@@ -22,6 +22,7 @@
 #include "kinecal/text/image_region.hpp"
 #include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/uncertainty/feature_places.hpp"
+#include "kinecal/trust/uncertainty/weak_parameters.hpp"
 
 namespace kinecal {
 
@@ -85,6 +86,10 @@ class SolvedProjection {
       all.push_back(std::move(number));
     }
     return all;
+  }
+  /// Where a point (3) is seen.
+  [[nodiscard]] Eigen::Vector2d pixel(const Vector3<double>& p) const {
+    return camera_.sensor().predict(p, settings_, own_);
   }
   /// The unit direction of a pixel; NaN where the lens sees nothing.
   [[nodiscard]] Vector3<double> direction(const Eigen::Vector2d& pixel) const {
@@ -302,10 +307,8 @@ class CameraMap {
       : camera_(camera), seen_(std::move(seen)) {
     const std::vector<int>& columns = camera.columns();
     covariance_ = solution.uncertainty.covariance.matrix()(columns, columns);
-    for (const int c : columns) {
-      deviations_.push_back(solution.uncertainty.deviation(c));
-      determined_ &= std::isfinite(deviations_.back());
-    }
+    for (const int c : columns) deviations_.push_back(solution.uncertainty.deviation(c));
+    set_undetermined(solution);
     std::vector<double> known;
     for (const double d : seen_.distances) {
       if (d > 0.0) known.push_back(d);
@@ -339,11 +342,51 @@ class CameraMap {
       if (cell != nullptr) ++all.cells[static_cast<std::size_t>(cell - all.cells.data())].features;
     }
     all.numbers = camera_.numbers(seen_.settings, deviations_);
-    if (apart && determined_) all.halves = halves_apart(all, derivatives, allowed, freedom);
+    add_focal(all);
+    if (apart && std::isfinite(all.deviations()[1])) {
+      all.halves = halves_apart(all, derivatives, allowed, freedom);
+    }
     return all;
   }
 
  private:
+  /// Keeps what samples do not determine of the camera.
+  void set_undetermined(const KnownSolution& solution) {
+    const Eigen::MatrixXd& null = solution.fit.coordinates.null;
+    undetermined_ = null(camera_.columns(), Eigen::all);
+    sizes_ = null;
+    for (Eigen::Index c = 0; c < null.rows(); ++c) {
+      const int p = solution.free.parameters()[static_cast<std::size_t>(c)];
+      sizes_.row(c) /= useful_deviation(solution.evaluator.problem().table()[p]);
+    }
+  }
+  /// How far a number moves by an undetermined combination of the parameters, the one that moves it most, if that is off as
+  /// far as typical robots are: see mark_undetermined().
+  /// @param by  (free of the camera) derivative of the number
+  [[nodiscard]] double unknown(const Eigen::RowVectorXd& by) const {
+    constexpr double kOff = 0.4;  // of useful_deviation()
+    if (undetermined_.cols() == 0) return 0.0;
+    const Eigen::VectorXd along = (by * undetermined_).transpose();
+    const double size = (sizes_ * along).lpNorm<Eigen::Infinity>();
+    return size > 0.0 ? kOff * along.squaredNorm() / size : 0.0;
+  }
+  /// Adds the focal length at the axis, as it appears in u, if it is known and fx is not.
+  void add_focal(ProjectionMap& to) const {
+    if (!(to.focal_deviation() > ProjectionMap::kKnownFocal)) return;
+    constexpr double kStep = 1e-3;  // radians
+    const Vector3<double> right(kStep, 0.0, 1.0), left(-kStep, 0.0, 1.0);
+    const Eigen::RowVectorXd by =
+        (camera_.by_free(right).row(0) - camera_.by_free(left).row(0)) / (2.0 * kStep);
+    const double focal = (camera_.pixel(right).x() - camera_.pixel(left).x()) / (2.0 * kStep);
+    const double deviation = std::sqrt(std::max(0.0, (by * covariance_ * by.transpose()).value()));
+    const bool is_known = deviation < ProjectionMap::kKnownFocal * focal &&
+                          !is_lost(unknown(by), deviation, kSmall * focal);
+    if (is_known) to.numbers.push_back({std::string(ProjectionMap::kAxisFocal), focal, deviation});
+  }
+  /// True if what is not determined moves a number by more than its deviation, and by more than is small.
+  [[nodiscard]] static bool is_lost(double moves, double deviation, double small) {
+    return moves > std::max(deviation, small);
+  }
   [[nodiscard]] Vector3<double> point(const Eigen::Vector2d& pixel, double distance) const {
     return (distance > 0.0 ? distance : 1.0) * camera_.direction(pixel);
   }
@@ -374,7 +417,8 @@ class CameraMap {
         by_point.transpose() * (by_point * by_point.transpose()).inverse();
     cell.metres =
         distance_ > 0.0 ? std::sqrt(std::max(0.0, (across * c * across.transpose()).trace())) : 0.0;
-    if (!determined_ && c.allFinite()) {
+    const double moves = std::hypot(unknown(a.row(0)), unknown(a.row(1)));
+    if (c.allFinite() && is_lost(moves, cell.deviation(), kSmallPixel)) {
       cell.covariance = {HUGE_VAL, HUGE_VAL, 0.0};
       cell.metres = HUGE_VAL;
     }
@@ -385,8 +429,12 @@ class CameraMap {
   const SolvedProjection& camera_;
   SeenByCamera seen_;
   Eigen::MatrixXd covariance_, motion_;
+  static constexpr double kSmallPixel = 0.05;  // pixels: corners are found to that
+  static constexpr double kSmall = 1e-3;       // of a focal length
+
   std::vector<double> deviations_;  ///< of its free parameters
-  bool determined_ = true;
+  Eigen::MatrixXd undetermined_;    ///< (free of the camera x combinations)
+  Eigen::MatrixXd sizes_;           ///< (all free x combinations) by useful_deviation()
   double distance_ = 0.0;
 };
 
@@ -423,6 +471,22 @@ std::array<double, 3> ProjectionMap::deviations() const {
   if (all.empty() || of_features.empty()) return {};
   const auto [least, most] = std::minmax_element(all.begin(), all.end());
   return {*least, median_of(of_features), *most};
+}
+
+const CameraNumber* ProjectionMap::number(std::string_view name) const {
+  const auto found = std::find_if(numbers.begin(), numbers.end(),
+                                  [&](const CameraNumber& one) { return one.name == name; });
+  return found == numbers.end() ? nullptr : &*found;
+}
+
+const CameraNumber* ProjectionMap::focal() const {
+  const CameraNumber* at_axis = number(kAxisFocal);
+  return at_axis != nullptr ? at_axis : number("fx");
+}
+
+double ProjectionMap::focal_deviation() const {
+  const CameraNumber* of = focal();
+  return of == nullptr ? 0.0 : of->deviation.value_or(0.0) / std::abs(of->value);
 }
 
 std::vector<ProjectionMap> projection_maps(const KnownSolution& solution) {

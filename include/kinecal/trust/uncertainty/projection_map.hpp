@@ -8,6 +8,8 @@
 // J_i derivatives of a pixel by i, J_m by a rigid motion m of the camera; G i is the motion that takes up most of a
 // change of i.  The covariance of a pixel is A C A^T, C that of i.
 //
+// What samples do not determine counts only where it moves pixels: fx and xi of a double_sphere in a narrow view do not.
+//
 // Two halves of the poses, solved apart, should differ as the information of each half says: cross-validation.  If they
 // differ by much more, the lens has a shape that its model does not have, or the target has one.
 // Source: mrcal's documentation, "Projection uncertainty" and "Cross-validation", for what to ask; the rest is linear
@@ -19,6 +21,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
@@ -66,7 +69,8 @@ struct ProjectionMap {
   std::array<double, 2> high{};  ///< the opposite corner
   int columns = 0, rows = 0;     ///< cells
   double distance = 0.0;         ///< of features from the camera, median, metres; 0: unknown
-  std::vector<CameraNumber> numbers = {};  ///< of the first sample's camera_info, corrected
+  /// Of the first sample's camera_info, corrected; and kAxisFocal, where fx is known worse than to 5 % and it is not.
+  std::vector<CameraNumber> numbers = {};
   std::vector<KnownPixel> cells = {};      ///< row by row
   std::optional<HalvesApart> halves = {};  ///< nullopt if there are too few poses
 
@@ -77,6 +81,18 @@ struct ProjectionMap {
   /// Standard deviations at the cell with the least, in the median of cells with features, and at the worst cell that
   /// the lens sees, pixels.
   [[nodiscard]] std::array<double, 3> deviations() const;
+  /// True if pixels where features are, are known as well as they are used.
+  [[nodiscard]] bool is_known() const { return deviations()[1] <= kEnough; }
+  static constexpr double kEnough = 1.0;  ///< pixels
+  /// A number of the camera; nullptr if it has none of this name.
+  [[nodiscard]] const CameraNumber* number(std::string_view name) const;
+  /// The focal length at the axis: kAxisFocal, or fx; nullptr if the camera has neither.
+  [[nodiscard]] const CameraNumber* focal() const;
+  /// Standard deviation of focal(), of its value; infinite if not determined, zero if held.
+  [[nodiscard]] double focal_deviation() const;
+  /// What double_sphere divides between fx and xi: pixels of u per radian at the axis.
+  static constexpr std::string_view kAxisFocal = "focal length at the axis";
+  static constexpr double kKnownFocal = 0.05;  ///< of it: worse is not known
 };
 
 /// What is known of the solution.

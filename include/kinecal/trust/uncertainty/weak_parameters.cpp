@@ -19,13 +19,13 @@ double useful_deviation(const Parameter& parameter) {
 }
 
 WeakParameters weak_parameters(const AnyProblem& problem, const FreeSet& free,
-                               const Uncertainty& known) {
+                               const Uncertainty& known, const std::set<int>& beside) {
   WeakParameters weak;
   Eigen::MatrixXd covariance = known.covariance.matrix();
   const auto parameter = [&](int c) { return free.parameters()[static_cast<std::size_t>(c)]; };
   // With some parameters held; not NaN, and not undetermined.
   const auto times = [&](int c) {
-    if (!std::isfinite(known.deviation(c))) return 0.0;
+    if (!std::isfinite(known.deviation(c)) || beside.contains(parameter(c))) return 0.0;
     return std::sqrt(std::max(0.0, covariance(c, c))) /
            useful_deviation(problem.table()[parameter(c)]);
   };

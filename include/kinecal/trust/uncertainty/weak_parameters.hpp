@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <vector>
 
 #include "kinecal/problem/any_problem.hpp"
@@ -24,8 +25,10 @@ struct WeakParameters {
 [[nodiscard]] double useful_deviation(const Parameter& parameter);
 
 /// The parameters that are determined, but with more than useful_deviation().
-/// @param free   the parameters of `known`
+/// @param free    the parameters of `known`
+/// @param beside  table indices that are judged otherwise: those of a lens by its pixels
 [[nodiscard]] WeakParameters weak_parameters(const AnyProblem& problem, const FreeSet& free,
-                                             const Uncertainty& known);
+                                             const Uncertainty& known,
+                                             const std::set<int>& beside = {});
 
 }  // namespace kinecal
