@@ -45,9 +45,8 @@ std::string chessboard_fault() {
 }
 
 std::vector<Eigen::Vector2d> find_chessboard(const GrayImage& image, int columns, int rows,
-                                             BoardSearch search) {
-  constexpr double kLongestSide = 1600.0;
-  const double shrink = std::max(1.0, std::max(image.width, image.height) / kLongestSide);
+                                             BoardSearch search, double longest) {
+  const double shrink = std::max(1.0, std::max(image.width, image.height) / longest);
   cv::Mat searched = opencv_image(image);
   if (shrink > 1.0) {
     cv::Mat smaller;
@@ -87,7 +86,7 @@ std::string chessboard_fault() {
   return opencv_missing("checkerboards");
 }
 
-std::vector<Eigen::Vector2d> find_chessboard(const GrayImage&, int, int, BoardSearch) {
+std::vector<Eigen::Vector2d> find_chessboard(const GrayImage&, int, int, BoardSearch, double) {
   return {};
 }
 

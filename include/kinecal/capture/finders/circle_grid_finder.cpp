@@ -56,10 +56,16 @@ namespace {
 /// there is a choice.  Empty if no order does.
 [[nodiscard]] std::vector<Eigen::Vector2d> ordered_discs(const std::vector<Eigen::Vector2d>& found,
                                                          const CircleGridSettings& s) {
-  constexpr double kMostOff = 0.2;  // of a step: a lens bends less, another order is a step off
+  // Of a step: another order is a step off.  A wide lens bends by more than the first, so what counts then is
+  // which order is off least.
+  constexpr double kAlwaysOff = 0.2, kMostOff = 0.7, kOfLeast = 1.3;
   const std::vector<Eigen::Vector2d> places = disc_places(s);
-  std::vector<Eigen::Vector2d> best;
-  double most = -std::numeric_limits<double>::infinity();
+  struct Order {
+    std::vector<Eigen::Vector2d> discs;
+    double off = 0.0, right = 0.0;
+  };
+  std::vector<Order> possible;
+  double least = kMostOff;
   const int orders = !s.asymmetric && s.points_x == s.points_y ? 8 : 4;
   for (int order = 0; order < orders; ++order) {
     std::vector<Eigen::Vector2d> discs = reordered(found, s, order);
@@ -69,18 +75,26 @@ namespace {
                           x = mapped(*h, middle + Eigen::Vector2d(s.size, 0)) - mapped(*h, middle),
                           y = mapped(*h, middle + Eigen::Vector2d(0, s.size)) - mapped(*h, middle);
     if (x.x() * y.y() - x.y() * y.x() <= 0.0) continue;  // mirrored
-    const double step = std::min(x.norm(), y.norm());
+    const double step = std::max(1.0, std::min(x.norm(), y.norm()));
     double off = 0.0;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      off = std::max(off, (mapped(*h, places[i]) - discs[i]).norm());
+      off = std::max(off, (mapped(*h, places[i]) - discs[i]).norm() / step);
     }
-    if (off > kMostOff * std::max(step, 1.0)) continue;
-    if (const double right = x.x() / x.norm(); right > most) {
-      most = right;
-      best = std::move(discs);
-    }
+    least = std::min(least, off);
+    possible.push_back({std::move(discs), off, x.x() / x.norm()});
   }
-  return best;
+  const Order* best = nullptr;
+  for (const Order& order : possible) {
+    if (order.off > std::max(kAlwaysOff, kOfLeast * least) || order.off > kMostOff) continue;
+    if (best == nullptr || order.right > best->right) best = &order;
+  }
+  return best == nullptr ? std::vector<Eigen::Vector2d>() : best->discs;
+}
+
+/// An image in which dark is bright.
+[[nodiscard]] GrayImage negative(GrayImage image) {
+  for (std::uint8_t& p : image.pixels) p = static_cast<std::uint8_t>(255 - p);
+  return image;
 }
 
 /// Why discs are too small, at the border or not sharp; empty if they are not.
@@ -146,13 +160,23 @@ Found CircleGridFinder::find(const View& view) const {
   }
   const std::string grid = detail::circles_text(settings_);
   const std::vector<Eigen::Vector2d> places = detail::disc_places(settings_);
-  std::vector<Eigen::Vector2d> about = detail::find_circles(
-      view.image, settings_.points_x, settings_.points_y, settings_.asymmetric);
-  if (!about.empty()) about = detail::ordered_discs(about, settings_);
+  // Of white discs on black, the negative is searched.
+  GrayImage image = view.image;
+  std::vector<Eigen::Vector2d> about;
+  for (const bool white : {false, true}) {
+    if (white) image = detail::negative(view.image);
+    about =
+        detail::find_circles(image, settings_.points_x, settings_.points_y, settings_.asymmetric);
+    if (!about.empty()) about = detail::ordered_discs(about, settings_);
+    if (!about.empty()) break;
+  }
   if (about.empty()) return refused("there is no " + grid + ", or not all of it is to be seen");
   const double gap = settings_.size * (settings_.asymmetric ? std::sqrt(2.0) : 1.0);
-  const auto discs = disc_centres(view.image, places, about, gap, *view.camera);
-  if (!discs) return refused("the discs of the " + grid + " are not clearly black on white");
+  const auto discs = disc_centres(image, places, about, gap, *view.camera);
+  if (!discs) {
+    return refused("the discs of the " + grid +
+                   " are not clearly black on white or white on black");
+  }
   std::vector<TargetCorner> found;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double reach = 0.7 * (mapped(discs->h, places[i] + Eigen::Vector2d(discs->radius, 0)) -
@@ -161,8 +185,7 @@ Found CircleGridFinder::find(const View& view) const {
     found.push_back(
         {static_cast<int>(i), discs->pixels[i], {places[i].x(), places[i].y(), 0.0}, reach});
   }
-  const std::string fault =
-      detail::discs_fault(view.image, *discs, places, settings_.target.quality);
+  const std::string fault = detail::discs_fault(image, *discs, places, settings_.target.quality);
   if (!fault.empty()) return refused("the " + grid + " is " + fault, marks_of(found));
   return observed(view, settings_.target, std::move(found));
 }
