@@ -53,6 +53,12 @@ std::vector<Eigen::Vector2d> find_chessboard(const GrayImage& image, int columns
     cv::resize(searched, smaller, {}, 1.0 / shrink, 1.0 / shrink, cv::INTER_AREA);
     searched = smaller;
   }
+  if (search == BoardSearch::squares) {  // noise has outlines: thousands of them take minutes
+    constexpr double kSmooth = 1.0;      // pixels
+    cv::Mat smooth;
+    cv::GaussianBlur(searched, smooth, {0, 0}, kSmooth);
+    searched = smooth;
+  }
   std::vector<cv::Point2f> found;
   const int usual =
       cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;

@@ -25,7 +25,8 @@ struct BoardsSeen {
 /// board is not the one, and a second one must not be mistaken for it.  A reduced image takes a fraction of
 /// the time and shows most boards; a larger one is searched for what it does not show.
 [[nodiscard]] BoardsSeen search_boards(const GrayImage& image, int columns, int rows) {
-  constexpr double kReduced = 800.0, kLargest = 1600.0;  // longest sides, pixels
+  constexpr double kReduced = 800.0, kLargest = 1600.0,
+                   kForSquares = 640.0;  // longest sides, pixels
   BoardsSeen seen;
   GrayImage left = image;
   const auto search = [&](BoardSearch how, double longest) {
@@ -47,7 +48,7 @@ struct BoardsSeen {
     search(BoardSearch::sectors, kLargest);
   }
   // Finds small boards, and one beside another of another size.
-  if (seen.boards.empty()) search(BoardSearch::squares, kReduced);
+  if (seen.boards.empty()) search(BoardSearch::squares, kForSquares);
   return seen;
 }
 
