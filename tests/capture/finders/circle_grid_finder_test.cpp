@@ -170,24 +170,6 @@ TEST(CircleGridFinder, WhiteDiscsOnBlackAreFoundAsBlackOnesOnWhite) {
   }
 }
 
-TEST(CircleGridFinder, GridsThatAFisheyeBendsAreFoundBeforeItsLensIsKnown) {
-  const CameraInfo fisheye = test::fisheye_camera(800, 600, 2.4);
-  for (const CircleGridSettings& s : {asymmetric_grid(), symmetric_grid(7, 5)}) {
-    const Target target = target_of(s, 0.375 * s.size, 0.14, 0.3, -0.2, 0.1);
-    View view;
-    view.frame = "optical";
-    view.camera = test::unknown_lens(fisheye.width, fisheye.height);
-    view.image = test::picture(fisheye, {target});
-    const Found found = CircleGridFinder(s).find(view);
-    ASSERT_TRUE(found) << found.refusal;
-    for (std::size_t i = 0; i < found.observations[0].features.size(); ++i) {
-      const Eigen::Vector2d truth =
-          test::pixel_of(fisheye, target.camera_T_board, found.observations[1].features[i].point);
-      EXPECT_LT((found.observations[0].features[i].point.head<2>() - truth).norm(), 1.0) << i;
-    }
-  }
-}
-
 TEST(CircleGridFinder, MostRandomViewsAreFoundAndNoneIsWrong) {
   const int count = test::repetitions(200, 10);
   int there = 0;

@@ -56,16 +56,10 @@ namespace {
 /// there is a choice.  Empty if no order does.
 [[nodiscard]] std::vector<Eigen::Vector2d> ordered_discs(const std::vector<Eigen::Vector2d>& found,
                                                          const CircleGridSettings& s) {
-  // Of a step: another order is a step off.  A wide lens bends by more than the first, so what counts then is
-  // which order is off least.
-  constexpr double kAlwaysOff = 0.2, kMostOff = 0.7, kOfLeast = 1.3;
+  constexpr double kMostOff = 0.2;  // of a step: a lens bends less, another order is a step off
   const std::vector<Eigen::Vector2d> places = disc_places(s);
-  struct Order {
-    std::vector<Eigen::Vector2d> discs;
-    double off = 0.0, right = 0.0;
-  };
-  std::vector<Order> possible;
-  double least = kMostOff;
+  std::vector<Eigen::Vector2d> best;
+  double most = -std::numeric_limits<double>::infinity();
   const int orders = !s.asymmetric && s.points_x == s.points_y ? 8 : 4;
   for (int order = 0; order < orders; ++order) {
     std::vector<Eigen::Vector2d> discs = reordered(found, s, order);
@@ -75,20 +69,18 @@ namespace {
                           x = mapped(*h, middle + Eigen::Vector2d(s.size, 0)) - mapped(*h, middle),
                           y = mapped(*h, middle + Eigen::Vector2d(0, s.size)) - mapped(*h, middle);
     if (x.x() * y.y() - x.y() * y.x() <= 0.0) continue;  // mirrored
-    const double step = std::max(1.0, std::min(x.norm(), y.norm()));
+    const double step = std::min(x.norm(), y.norm());
     double off = 0.0;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      off = std::max(off, (mapped(*h, places[i]) - discs[i]).norm() / step);
+      off = std::max(off, (mapped(*h, places[i]) - discs[i]).norm());
     }
-    least = std::min(least, off);
-    possible.push_back({std::move(discs), off, x.x() / x.norm()});
+    if (off > kMostOff * std::max(step, 1.0)) continue;
+    if (const double right = x.x() / x.norm(); right > most) {
+      most = right;
+      best = std::move(discs);
+    }
   }
-  const Order* best = nullptr;
-  for (const Order& order : possible) {
-    if (order.off > std::max(kAlwaysOff, kOfLeast * least) || order.off > kMostOff) continue;
-    if (best == nullptr || order.right > best->right) best = &order;
-  }
-  return best == nullptr ? std::vector<Eigen::Vector2d>() : best->discs;
+  return best;
 }
 
 /// An image in which dark is bright.
