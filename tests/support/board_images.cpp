@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinecal/sensors/lens.hpp"
 #include "kinecal/study/seeded_random.hpp"
 
 namespace kinecal::test {
@@ -61,22 +62,29 @@ GrayImage picture(const CameraInfo& camera, const std::vector<Target>& targets,
   const int width = camera.width, height = camera.height;
   std::vector<Pose<double>> inverse;
   for (const Target& t : targets) inverse.push_back(t.camera_T_board.inverse());
+  const Lens lens(camera);
   std::vector<double> light;
   light.reserve(static_cast<std::size_t>(width * height));
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
+      const Vector3<double> first = lens.ray(u - 0.5, v - 0.5);
+      const Vector3<double> right = lens.ray(u + 0.5, v - 0.5) - first,
+                            down = lens.ray(u - 0.5, v + 0.5) - first;
+      if (!first.allFinite() || !right.allFinite() || !down.allFinite()) {
+        light.push_back(0.0);  // beyond the circle of a fisheye
+        continue;
+      }
       double sum = 0.0;
       for (int k = 0; k < 16; ++k) {
-        const double x = u + (k % 4 - 1.5) / 4.0, y = v + (k / 4 - 1.5) / 4.0;
-        const Vector3<double> ray((x - camera.p[2]) / camera.p[0], (y - camera.p[6]) / camera.p[5],
-                                  1.0);
+        const Vector3<double> ray =
+            first + (k % 4 + 0.5) / 4.0 * right + (k / 4 + 0.5) / 4.0 * down;
         sum += ray_value(targets, inverse, ray, how);
       }
       light.push_back(sum / 16.0);
     }
   }
-  const std::vector<double> lens = gaussian(how.blur);
-  light = filtered(filtered(light, width, height, 1, lens), width, height, 0, lens);
+  const std::vector<double> weights = gaussian(how.blur);
+  light = filtered(filtered(light, width, height, 1, weights), width, height, 0, weights);
   if (how.motion > 0) {
     const auto n = static_cast<std::size_t>(2 * (how.motion / 2) + 1);
     light = filtered(light, width, height, 1, std::vector<double>(n, 1.0 / static_cast<double>(n)));
@@ -91,12 +99,13 @@ GrayImage picture(const CameraInfo& camera, const std::vector<Target>& targets,
   return image;
 }
 
-Print checkerboard(int columns, int rows, double square) {
+Print checkerboard(int columns, int rows, double square, double border) {
   return [=](double x, double y) {
-    const double a = std::floor(x / square), b = std::floor(y / square);
-    if (a < -2 || b < -2 || a > columns || b > rows) return -1.0;
-    if (a < -1 || b < -1 || a >= columns || b >= rows) return 1.0;
-    return std::fmod(a + b + 8.0, 2.0) == 0.0 ? 0.0 : 1.0;
+    const double u = x / square, v = y / square;
+    const double beyond = std::max({-u, -v, u - (columns - 1), v - (rows - 1)});
+    if (beyond > border + 1.0) return -1.0;
+    if (beyond > border) return 1.0;
+    return std::fmod(std::floor(u) + std::floor(v) + 8.0, 2.0) == 0.0 ? 0.0 : 1.0;
   };
 }
 

@@ -7,6 +7,7 @@
 
 #include "kinecal/capture/view.hpp"
 #include "kinecal/geometry/pose.hpp"
+#include "kinecal/sensors/lens.hpp"
 
 namespace kinecal::test {
 
@@ -40,11 +41,36 @@ inline CameraInfo camera_640(double focal_length = 600.0) {
   return camera;
 }
 
+/// A camera whose lens nobody has calibrated: a guess of its focal length.
+inline CameraInfo unknown_lens(int width, int height) {
+  CameraInfo camera = camera_640(width);
+  camera.width = width;
+  camera.height = height;
+  camera.k[2] = camera.p[2] = 0.5 * width - 0.5;
+  camera.k[5] = camera.p[6] = 0.5 * height - 0.5;
+  return camera;
+}
+
+/// A fisheye (equidistant) whose image is as wide as its field of view.
+/// @param view  radians from the left to the right border
+/// @param d     (4) its coefficients
+inline CameraInfo fisheye_camera(int width, int height, double view,
+                                 const std::vector<double>& d = {0, 0, 0, 0}) {
+  const double t = 0.5 * view, w = t * t;
+  const double f = 0.5 * width / (t * (1 + w * (d[0] + w * (d[1] + w * (d[2] + w * d[3])))));
+  CameraInfo camera;
+  camera.width = width;
+  camera.height = height;
+  camera.distortion_model = "equidistant";
+  camera.d = d;
+  camera.k = {f, 0, 0.5 * width - 0.5, 0, f, 0.5 * height - 0.5, 0, 0, 1};
+  return camera;
+}
+
 /// Where a point of a target appears, pixels.
 inline Eigen::Vector2d pixel_of(const CameraInfo& camera, const Pose<double>& camera_T_board,
                                 const Vector3<double>& p_board) {
-  const Vector3<double> p = camera_T_board * p_board;
-  return {camera.p[0] * p.x() / p.z() + camera.p[2], camera.p[5] * p.y() / p.z() + camera.p[6]};
+  return Lens(camera).project(camera_T_board * p_board);
 }
 
 /// A target that faces the camera, then turned about the camera's axes (radians), with the point
@@ -59,7 +85,7 @@ inline Pose<double> facing(const Vector3<double>& at, double tilt_x, double tilt
   return pose;
 }
 
-/// The picture of targets: 4 x 4 rays a pixel, then blur, shade and noise.
+/// The picture of targets by the camera's lens: 4 x 4 rays a pixel, then blur, shade and noise.
 [[nodiscard]] GrayImage picture(const CameraInfo& camera, const std::vector<Target>& targets,
                                 const Exposure& how = {});
 
@@ -88,6 +114,7 @@ inline double mean_error(const Found& found, const Target& target) {
 
 /// A checkerboard whose first inner corner is at the origin: dark between the first corners, with a
 /// white margin of one square.
-[[nodiscard]] Print checkerboard(int columns, int rows, double square);
+/// @param border  width of its outer squares, of the others'
+[[nodiscard]] Print checkerboard(int columns, int rows, double square, double border = 1.0);
 
 }  // namespace kinecal::test

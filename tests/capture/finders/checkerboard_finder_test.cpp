@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "support/board_images.hpp"
 #include "support/repetitions.hpp"
@@ -16,6 +19,7 @@ using kinecal::test::Exposure;
 using kinecal::test::facing;
 using kinecal::test::mean_error;
 using kinecal::test::pixel_of;
+using kinecal::test::Print;
 using kinecal::test::Target;
 using kinecal::test::view_of;
 using ::testing::HasSubstr;
@@ -150,6 +154,85 @@ TEST(CheckerboardFinder, CornersAreReadFromTheCloudAndHolesAreFilled) {
   view.points.pixels.assign(view.points.pixels.size(), no_point());
   EXPECT_EQ(CheckerboardFinder(settings).find(view).refusal,
             "depth is missing at 20 of 20 corners");
+}
+
+/// What a fisheye of 800 x 800 pixels sees of a board that is turned away from its axis.
+struct BentView {
+  View view;
+  CameraInfo lens;
+  Target target;
+
+  BentView(int columns, int rows, double sees, double distance, double away)
+      : lens(test::fisheye_camera(800, 800, sees, {0.01, -0.004, 0.001, -0.0001})),
+        target(board(columns, rows, {0, 0, distance}, 0.25, -0.2, 0.15)) {
+    const Eigen::AngleAxisd turn(away, Vector3<double>(0.8, -0.6, 0.0));
+    target.camera_T_board.rotation = turn * target.camera_T_board.rotation;
+    target.camera_T_board.translation = turn * target.camera_T_board.translation;
+    view.frame = "optical";
+    view.camera = test::unknown_lens(800, 800);
+    view.image = test::picture(lens, {target}, {.blur = 0.7});
+  }
+};
+
+TEST(CheckerboardFinder, AllCornersOfABoardThatAFisheyeBendsAreFoundBeforeItsLensIsKnown) {
+  constexpr double kDegree = 0.017453292519943295;
+  for (const auto& [sees, distance, away] : {std::array{120.0, 0.18, 0.0},
+                                             {120.0, 0.25, 25.0},
+                                             {150.0, 0.15, 20.0},
+                                             {190.0, 0.1, 0.0},
+                                             {190.0, 0.15, 40.0},
+                                             {190.0, 0.2, 65.0}}) {
+    const BentView bent(8, 6, sees * kDegree, distance, away * kDegree);
+    const Found found = finder_of(8, 6).find(bent.view);
+    ASSERT_TRUE(found) << sees << ' ' << away << ": " << found.refusal;
+    EXPECT_GE(found.observations[0].features.size(), 47u) << sees << ' ' << away;
+    for (std::size_t i = 0; i < found.observations[0].features.size(); ++i) {
+      const Eigen::Vector2d at = found.observations[0].features[i].point.head<2>();
+      const Vector3<double>& place = found.observations[1].features[i].point;
+      const Vector3<double> last(7 * kSquare, 5 * kSquare,
+                                 0.0);  // the board looks alike upside down
+      const double off =
+          std::min((pixel_of(bent.lens, bent.target.camera_T_board, place) - at).norm(),
+                   (pixel_of(bent.lens, bent.target.camera_T_board, last - place) - at).norm());
+      EXPECT_LT(off, 0.4) << sees << ' ' << away << ", corner " << i;
+    }
+  }
+}
+
+TEST(CheckerboardFinder, APartOfALargerBoardThatAFisheyeBendsIsRefused) {
+  const BentView bent(9, 7, 2.6, 0.18, 0.3);
+  for (const auto& [columns, rows] : {std::pair{8, 6}, {9, 6}, {8, 7}, {7, 5}}) {
+    EXPECT_FALSE(finder_of(columns, rows).find(bent.view)) << columns << " x " << rows;
+  }
+}
+
+TEST(CheckerboardFinder, OuterSquaresMayBeCutOnAGreyOrSaturatedBackground) {
+  for (const double border : {0.4, 0.5, 0.8}) {
+    for (const double background : {130.0, 255.0}) {
+      Target target = board(6, 4, {0, 0, 0.5}, 0.3, -0.3, 0.2);
+      const Print cut = test::checkerboard(6, 4, kSquare, border);
+      target.print = [=](double x, double y) {  // with the paper, or without
+        const double beyond = std::max({-x, -y, x - 5 * kSquare, y - 3 * kSquare});
+        return background < 200.0 && beyond > border * kSquare ? -1.0 : cut(x, y);
+      };
+      const Exposure how{.white = 255.0, .background = background};
+      const Found found = finder_of(6, 4).find(view_of({target}, how));
+      ASSERT_TRUE(found) << border << ' ' << background << ": " << found.refusal;
+      EXPECT_EQ(found.observations[0].features.size(), 24u);
+    }
+  }
+}
+
+TEST(CheckerboardFinder, ASmallBoardInALargeImageIsFound) {
+  CameraInfo camera = test::unknown_lens(1920, 1200);
+  const Target target = board(7, 5, {0.3, 0.1, 2.2}, 0.2, 0.1, 0.1, 0.012);  // 10 pixels a square
+  View view;
+  view.frame = "optical";
+  view.camera = camera;
+  view.image = test::picture(camera, {target});
+  const Found found = finder_of(7, 5, 0.012).find(view);
+  ASSERT_TRUE(found) << found.refusal;
+  EXPECT_EQ(found.observations[0].features.size(), 35u);
 }
 
 TEST(CheckerboardFinder, ABoardThatIsNotThereIsRefused) {

@@ -155,6 +155,21 @@ TEST(CircleGridFinder, AsymmetricGridsAreFoundAtAnyAngleWithTheRightFirstDisc) {
   }
 }
 
+TEST(CircleGridFinder, WhiteDiscsOnBlackAreFoundAsBlackOnesOnWhite) {
+  for (const CircleGridSettings& s : {asymmetric_grid(), symmetric_grid(7, 5)}) {
+    const Target black = target_of(s, 0.375 * s.size, 0.45, 0.4, -0.3, 0.2);
+    const Target white{[=](double x, double y) {
+                         const double value = black.print(x, y);
+                         return value < 0.0 ? value : 1.0 - value;
+                       },
+                       black.camera_T_board};
+    const Found found = CircleGridFinder(s).find(test::view_of({white}));
+    ASSERT_TRUE(found) << found.refusal;
+    EXPECT_EQ(static_cast<int>(found.observations[0].features.size()), s.points_x * s.points_y);
+    EXPECT_LT(test::mean_error(found, white), 0.1);
+  }
+}
+
 TEST(CircleGridFinder, MostRandomViewsAreFoundAndNoneIsWrong) {
   const int count = test::repetitions(200, 10);
   int there = 0;

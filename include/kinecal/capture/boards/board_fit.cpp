@@ -57,18 +57,35 @@ namespace {
   return fit;
 }
 
+/// A corner that is farther off is wrong, pixels.  4 medians are 4.7 standard deviations: chance drops none.
+[[nodiscard]] double limit_of(const CornerFit& fit) {
+  constexpr double kPixels = 0.75, kMedians = 4.0;
+  return std::max(kPixels, kMedians * fit.typical);
+}
+
+[[nodiscard]] std::ptrdiff_t wrong_corners(const CornerFit& fit) {
+  const double limit = limit_of(fit);
+  return std::count_if(fit.misses.begin(), fit.misses.end(),
+                       [&](const Eigen::Vector2d& miss) { return !(miss.norm() <= limit); });
+}
+
 /// The fit with the lens that agrees best.
 [[nodiscard]] CornerFit best_fit(const PlaneView& view, const CameraInfo& camera) {
   constexpr double kGood = 0.25, kBetter = 0.6;  // pixels; share of what was left
   CornerFit best = view.fit(no_lens());
   const auto take = [&](CornerFit other) {
-    if (other.typical < kBetter * best.typical) best = std::move(other);
+    // A lens that is bent more than the model shows first where it is bent most.
+    const bool explains =
+        other.typical <= best.typical && wrong_corners(other) < wrong_corners(best);
+    if (other.typical < kBetter * best.typical || explains) best = std::move(other);
   };
-  if (best.typical <= kGood) return best;
+  const auto is_good = [&] { return best.typical <= kGood && wrong_corners(best) == 0; };
+  if (is_good()) return best;
   if (const auto lens = known_lens(camera, view)) take(view.fit(*lens));
-  if (best.typical <= kGood || view.plane.size() < kForLens) return best;
+  if (is_good() || view.plane.size() < kForLens) return best;
   take(best_division(view, camera));
-  if (best.typical > kGood && view.plane.size() >= kForSquare) {
+  if (!is_good()) take(best_fisheye(view, camera));
+  if (!is_good() && view.plane.size() >= kForSquare) {
     take(without_smooth_field(view, best));
   }
   return best;
@@ -124,9 +141,8 @@ BoardFit fit_board(const std::vector<TargetCorner>& corners, const CameraInfo& c
   }
   board.typical = fit.typical;
   board.gap = detail::median_gap(view.pixels);
-  // 4 medians are 4.7 standard deviations: chance drops no corner.
-  constexpr double kPixels = 0.75, kMedians = 4.0, kFewOfGap = 0.03;
-  board.limit = std::max(kPixels, kMedians * fit.typical);
+  constexpr double kFewOfGap = 0.03;
+  board.limit = detail::limit_of(fit);
   // Few corners do not show the lens.
   if (corners.size() < detail::kForLens) board.limit += kFewOfGap * board.gap;
   return board;

@@ -138,4 +138,33 @@ struct PlaneView {
   return best;
 }
 
+/// The fit with the best focal length of an equidistant fisheye whose axis is at the centre of the image.
+/// It fits a board far from the axis, or behind the camera, too, of which no pinhole has an image.
+[[nodiscard]] inline CornerFit best_fisheye(const PlaneView& view, const CameraInfo& camera) {
+  CameraInfo lens;
+  lens.width = camera.width;
+  lens.height = camera.height;
+  lens.distortion_model = "equidistant";
+  lens.d = {0, 0, 0, 0};
+  constexpr double kLeast = 0.2, kMost = 1.0;  // focal lengths, of the longer side
+  const double longer = std::max(camera.width, camera.height);
+  double best_focal = kMost * longer, step = 1.1;
+  CornerFit best;
+  const auto attempt = [&](double focal) {
+    lens.k = {focal, 0, 0.5 * camera.width, 0, focal, 0.5 * camera.height, 0, 0, 1};
+    const auto known = known_lens(lens, view);
+    if (!known) return;
+    CornerFit fit = view.fit(*known);
+    if (!(fit.typical < best.typical)) return;
+    best = std::move(fit);
+    best_focal = focal;
+  };
+  for (double focal = kLeast * longer; focal <= kMost * longer; focal *= step) attempt(focal);
+  for (; step > 1.003; step = std::cbrt(step)) {
+    const double from = best_focal;
+    for (const int side : {-2, -1, 1, 2}) attempt(from * std::pow(step, side / 3.0));
+  }
+  return best;
+}
+
 }  // namespace kinecal::detail

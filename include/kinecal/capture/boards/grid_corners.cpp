@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "kinecal/capture/boards/board_order.hpp"
-#include "kinecal/capture/boards/homography.hpp"
 
 namespace kinecal::detail {
 
@@ -65,17 +64,45 @@ double longest_side(const CornerGrid& grid) {
          std::min(near[0], near[1]) - second > contrast / 2.0;
 }
 
-/// True if corners are within a third of a square of a flat grid.
-[[nodiscard]] bool is_flat(const CornerGrid& grid) {
-  std::vector<Eigen::Vector2d> places;
-  for (int r = 0; r < grid.rows; ++r) {
-    for (int c = 0; c < grid.columns; ++c) places.emplace_back(c, r);
+/// True if steps along a line of corners change smoothly: each by less than 60 %, and the change itself by
+/// less than half a step.  A skipped or exchanged corner, or one a third of a square off, is not smooth.
+[[nodiscard]] bool is_smooth(const std::vector<Eigen::Vector2d>& line) {
+  constexpr double kMostChange = 0.6, kMostTurn = 0.5;  // of the mean step
+  for (std::size_t i = 2; i < line.size(); ++i) {
+    const Eigen::Vector2d step = line[i] - line[i - 1], before = line[i - 1] - line[i - 2];
+    if (!((step - before).norm() <= kMostChange * (step.norm() + before.norm()) / 2.0)) {
+      return false;
+    }
+    if (i < 3) continue;
+    const Eigen::Vector2d first = line[i - 2] - line[i - 3];
+    const double mean = (step.norm() + before.norm() + first.norm()) / 3.0;
+    if (!((step - 2.0 * before + first).norm() <= kMostTurn * mean)) return false;
   }
-  const auto h = homography(places, grid.corners);
-  if (!h) return false;
-  const double limit = smallest_side(grid) / 3.0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (!((mapped(*h, places[i]) - grid.corners[i]).norm() <= limit)) return false;
+  return true;
+}
+
+/// True if rows and columns are smooth, and no square is turned over: of a flat board that any lens may
+/// have bent.
+[[nodiscard]] bool is_bent_board(const CornerGrid& grid) {
+  for (int r = 0; r < grid.rows; ++r) {
+    std::vector<Eigen::Vector2d> row;
+    for (int c = 0; c < grid.columns; ++c) row.push_back(grid.at(c, r));
+    if (!is_smooth(row)) return false;
+  }
+  for (int c = 0; c < grid.columns; ++c) {
+    std::vector<Eigen::Vector2d> column;
+    for (int r = 0; r < grid.rows; ++r) column.push_back(grid.at(c, r));
+    if (!is_smooth(column)) return false;
+  }
+  const auto side = [&](int c, int r) {  // which way round the square behind (c, r) is
+    const Eigen::Vector2d along = grid.at(c + 1, r + 1) - grid.at(c, r),
+                          across = grid.at(c, r + 1) - grid.at(c + 1, r);
+    return along.x() * across.y() - along.y() * across.x() > 0.0;
+  };
+  for (int r = 0; r + 1 < grid.rows; ++r) {
+    for (int c = 0; c + 1 < grid.columns; ++c) {
+      if (side(c, r) != side(0, 0)) return false;
+    }
   }
   return true;
 }
@@ -98,20 +125,32 @@ double longest_side(const CornerGrid& grid) {
 }
 
 bool is_checkerboard(const GrayImage& image, const CornerGrid& grid) {
-  if (!is_flat(grid)) return false;
+  if (!is_bent_board(grid)) return false;
   const int dark =
       even_squares_brighter(image, grid.columns, grid.rows, grid.corners) < 0.0 ? 0 : 1;
-  int pairs = 0, differ = 0;
+  std::vector<int> in_row(static_cast<std::size_t>(grid.rows)),
+      in_column(static_cast<std::size_t>(grid.columns));
+  int differ = 0;
   for (int r = 0; r + 1 < grid.rows; ++r) {
     for (int c = 0; c + 2 < grid.columns; ++c) {
       const auto first = darkest_and_brightest(image, grid, c, r),
                  second = darkest_and_brightest(image, grid, c + 1, r);
       const bool first_dark = (c + r) % 2 == dark;
-      ++pairs;
-      if (first_dark ? first[1] < second[0] : second[1] < first[0]) ++differ;
+      if (!(first_dark ? first[1] < second[0] : second[1] < first[0])) continue;
+      ++differ;
+      ++in_row[static_cast<std::size_t>(r)];
+      ++in_column[static_cast<std::size_t>(c)];
     }
   }
-  return 10 * differ >= 9 * pairs;
+  // A skipped row or column has squares of both colours.
+  const int across = grid.columns - 2, down = grid.rows - 1;
+  for (int r = 0; r < down; ++r) {
+    if (2 * in_row[static_cast<std::size_t>(r)] < across) return false;
+  }
+  for (int c = 0; c < across; ++c) {
+    if (2 * in_column[static_cast<std::size_t>(c)] < down) return false;
+  }
+  return 10 * differ >= 9 * across * down;
 }
 
 bool goes_on(const GrayImage& image, const CornerGrid& grid) {
@@ -143,9 +182,9 @@ double glare_share(const GrayImage& image, const CornerGrid& grid) {
   const int dark =
       even_squares_brighter(image, grid.columns, grid.rows, grid.corners) < 0.0 ? 0 : 1;
   int pixels = 0, saturated = 0;
-  for (int r = -1; r < grid.rows; ++r) {
-    for (int c = -1; c < grid.columns; ++c) {
-      if ((r + c + 2) % 2 != dark) continue;
+  for (int r = 0; r + 1 < grid.rows; ++r) {
+    for (int c = 0; c + 1 < grid.columns; ++c) {
+      if ((r + c) % 2 != dark) continue;
       const Eigen::Vector2d origin = grid.at(c, r), x = grid.at(c + 1, r) - origin,
                             y = grid.at(c, r + 1) - origin;
       for (int k = 0; k < 25; ++k) {
@@ -160,22 +199,30 @@ double glare_share(const GrayImage& image, const CornerGrid& grid) {
 }
 
 void paint_over(const CornerGrid& grid, GrayImage& image) {
-  const std::array<Eigen::Vector2d, 4> outline = {grid.at(-1, -1), grid.at(grid.columns, -1),
-                                                  grid.at(grid.columns, grid.rows),
-                                                  grid.at(-1, grid.rows)};
   double sum = 0.0;
   for (const auto& c : grid.corners) sum += brightness_at(image, c);
   const auto grey = static_cast<std::uint8_t>(
       sum / static_cast<double>(std::max<std::size_t>(grid.corners.size(), 1)));
-  for (int v = 0; v < image.height; ++v) {
-    for (int u = 0; u < image.width; ++u) {
-      int left = 0;
-      for (std::size_t k = 0; k < 4; ++k) {
-        const Eigen::Vector2d side = outline[(k + 1) % 4] - outline[k];
-        const Eigen::Vector2d to = Eigen::Vector2d(u, v) - outline[k];
-        left += side.x() * to.y() - side.y() * to.x() >= 0.0 ? 1 : -1;
+  const auto paint_square = [&](const std::array<Eigen::Vector2d, 4>& corners) {
+    Eigen::Vector2d least = corners[0], most = corners[0];
+    for (const auto& c : corners) least = least.cwiseMin(c), most = most.cwiseMax(c);
+    least = least.cwiseMax(0.0);
+    most = most.cwiseMin(Eigen::Vector2d(image.width - 1.0, image.height - 1.0));
+    for (int v = static_cast<int>(least.y()); v <= most.y(); ++v) {
+      for (int u = static_cast<int>(least.x()); u <= most.x(); ++u) {
+        int left = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+          const Eigen::Vector2d side = corners[(k + 1) % 4] - corners[k];
+          const Eigen::Vector2d to = Eigen::Vector2d(u, v) - corners[k];
+          left += side.x() * to.y() - side.y() * to.x() >= 0.0 ? 1 : -1;
+        }
+        if (std::abs(left) == 4) image(u, v) = grey;
       }
-      if (std::abs(left) == 4) image(u, v) = grey;
+    }
+  };
+  for (int r = -1; r < grid.rows; ++r) {
+    for (int c = -1; c < grid.columns; ++c) {
+      paint_square({grid.at(c, r), grid.at(c + 1, r), grid.at(c + 1, r + 1), grid.at(c, r + 1)});
     }
   }
 }

@@ -25,8 +25,9 @@ struct CornerGrid {
 /// The longest side of a square, pixels.
 [[nodiscard]] double longest_side(const CornerGrid& grid);
 
-/// True if corners are within a third of a square of a flat grid, and squares are uniformly dark
-/// and bright in turn: nine of ten pairs of neighbours.
+/// True if corners can be those of a flat board that a lens has bent, of up to 190 degrees: distances from
+/// corner to corner change smoothly along rows and columns; and squares are uniformly dark and bright in
+/// turn: nine of ten pairs of neighbours, and half of those in each row and column.
 [[nodiscard]] bool is_checkerboard(const GrayImage& image, const CornerGrid& grid);
 
 /// True if squares continue beyond a side: the grid is part of a larger board.
@@ -38,7 +39,8 @@ struct GridEdges {
 };
 [[nodiscard]] GridEdges edges_of(const GrayImage& image, const CornerGrid& grid);
 
-/// Fraction of the pixels of dark squares that are saturated.
+/// Fraction of the pixels of dark squares between corners that are saturated.  Those around them may be cut, or
+/// not as wide.
 [[nodiscard]] double glare_share(const GrayImage& image, const CornerGrid& grid);
 
 /// Paints a grid and one square around it in one grey, so that it is not found again.

@@ -45,14 +45,19 @@ std::string chessboard_fault() {
 }
 
 std::vector<Eigen::Vector2d> find_chessboard(const GrayImage& image, int columns, int rows,
-                                             BoardSearch search) {
-  constexpr double kLongestSide = 1600.0;
-  const double shrink = std::max(1.0, std::max(image.width, image.height) / kLongestSide);
+                                             BoardSearch search, double longest) {
+  const double shrink = std::max(1.0, std::max(image.width, image.height) / longest);
   cv::Mat searched = opencv_image(image);
   if (shrink > 1.0) {
     cv::Mat smaller;
     cv::resize(searched, smaller, {}, 1.0 / shrink, 1.0 / shrink, cv::INTER_AREA);
     searched = smaller;
+  }
+  if (search == BoardSearch::squares) {  // noise has outlines: thousands of them take minutes
+    constexpr double kSmooth = 1.0;      // pixels
+    cv::Mat smooth;
+    cv::GaussianBlur(searched, smooth, {0, 0}, kSmooth);
+    searched = smooth;
   }
   std::vector<cv::Point2f> found;
   const int usual =
@@ -87,7 +92,7 @@ std::string chessboard_fault() {
   return opencv_missing("checkerboards");
 }
 
-std::vector<Eigen::Vector2d> find_chessboard(const GrayImage&, int, int, BoardSearch) {
+std::vector<Eigen::Vector2d> find_chessboard(const GrayImage&, int, int, BoardSearch, double) {
   return {};
 }
 

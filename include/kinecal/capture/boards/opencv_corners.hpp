@@ -26,15 +26,16 @@ namespace kinecal::detail {
 /// How to search for boards.  Of 240 boards of 5 x 4 to 9 x 6 corners in 640 x 480 pixels, some
 /// blurred, `squares` found 185 and `sectors` 237; of 80 with 3 x 3, `squares` 80 and `sectors` 72.
 enum class BoardSearch {
-  sectors,  ///< by their corners: 60 ms for any image
-  squares   ///< by their squares: 1 ms if the board is there, 1.5 s if only another one is
+  sectors,  ///< by their corners: 60 ms for any image of 640 x 480 pixels
+  squares  ///< by their squares: 1 ms if the board is there; seconds, more in larger images, if it is not
 };
 
 /// The inner corners of a board, row by row, in one of its orders; empty if there is no such board.
-/// Larger images than 1600 pixels are searched at reduced size.
 /// @param columns, rows  inner corners, at least 3
+/// @param longest        side of the image, pixels; a larger one is searched at this reduced size
 [[nodiscard]] std::vector<Eigen::Vector2d> find_chessboard(const GrayImage& image, int columns,
-                                                           int rows, BoardSearch search);
+                                                           int rows, BoardSearch search,
+                                                           double longest);
 
 /// Refines corners between four squares to where the surrounding gradients meet.
 /// @param reach  half the side of the window around a corner, pixels

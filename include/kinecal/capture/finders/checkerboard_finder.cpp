@@ -22,27 +22,33 @@ struct BoardsSeen {
 };
 
 /// Boards of one size, two at most.  Paints over each board found and searches again: a larger
-/// board is not the one, and a second one must not be mistaken for it.
+/// board is not the one, and a second one must not be mistaken for it.  A reduced image takes a fraction of
+/// the time and shows most boards; a larger one is searched for what it does not show.
 [[nodiscard]] BoardsSeen search_boards(const GrayImage& image, int columns, int rows) {
+  constexpr double kReduced = 800.0, kLargest = 1600.0,
+                   kForSquares = 640.0;  // longest sides, pixels
   BoardsSeen seen;
   GrayImage left = image;
-  BoardSearch how = BoardSearch::sectors;
-  for (int tries = 0; tries < 6 && seen.boards.size() < 2; ++tries) {
-    const CornerGrid grid{columns, rows, find_chessboard(left, columns, rows, how)};
-    if (grid.corners.empty()) {
-      if (how == BoardSearch::squares) break;
-      how = BoardSearch::squares;  // finds small boards, and one beside another of another size
-      continue;
-    }
-    if (is_checkerboard(image, grid)) {
-      if (goes_on(image, grid)) {
-        seen.larger = true;
-      } else {
-        seen.boards.push_back(grid);
+  const auto search = [&](BoardSearch how, double longest) {
+    for (int tries = 0; tries < 4 && seen.boards.size() < 2; ++tries) {
+      const CornerGrid grid{columns, rows, find_chessboard(left, columns, rows, how, longest)};
+      if (grid.corners.empty()) return;
+      if (is_checkerboard(image, grid)) {
+        if (goes_on(image, grid)) {
+          seen.larger = true;
+        } else {
+          seen.boards.push_back(grid);
+        }
       }
+      paint_over(grid, left);
     }
-    paint_over(grid, left);
+  };
+  search(BoardSearch::sectors, kReduced);
+  if (seen.boards.empty() && std::max(image.width, image.height) > kReduced) {
+    search(BoardSearch::sectors, kLargest);
   }
+  // Finds small boards, and one beside another of another size.
+  if (seen.boards.empty()) search(BoardSearch::squares, kForSquares);
   return seen;
 }
 

@@ -83,6 +83,12 @@ namespace {
   return best;
 }
 
+/// An image in which dark is bright.
+[[nodiscard]] GrayImage negative(GrayImage image) {
+  for (std::uint8_t& p : image.pixels) p = static_cast<std::uint8_t>(255 - p);
+  return image;
+}
+
 /// Why discs are too small, at the border or not sharp; empty if they are not.
 [[nodiscard]] std::string discs_fault(const GrayImage& image, const DiscCentres& discs,
                                       const std::vector<Eigen::Vector2d>& places,
@@ -146,13 +152,23 @@ Found CircleGridFinder::find(const View& view) const {
   }
   const std::string grid = detail::circles_text(settings_);
   const std::vector<Eigen::Vector2d> places = detail::disc_places(settings_);
-  std::vector<Eigen::Vector2d> about = detail::find_circles(
-      view.image, settings_.points_x, settings_.points_y, settings_.asymmetric);
-  if (!about.empty()) about = detail::ordered_discs(about, settings_);
+  // Of white discs on black, the negative is searched.
+  GrayImage image = view.image;
+  std::vector<Eigen::Vector2d> about;
+  for (const bool white : {false, true}) {
+    if (white) image = detail::negative(view.image);
+    about =
+        detail::find_circles(image, settings_.points_x, settings_.points_y, settings_.asymmetric);
+    if (!about.empty()) about = detail::ordered_discs(about, settings_);
+    if (!about.empty()) break;
+  }
   if (about.empty()) return refused("there is no " + grid + ", or not all of it is to be seen");
   const double gap = settings_.size * (settings_.asymmetric ? std::sqrt(2.0) : 1.0);
-  const auto discs = disc_centres(view.image, places, about, gap, *view.camera);
-  if (!discs) return refused("the discs of the " + grid + " are not clearly black on white");
+  const auto discs = disc_centres(image, places, about, gap, *view.camera);
+  if (!discs) {
+    return refused("the discs of the " + grid +
+                   " are not clearly black on white or white on black");
+  }
   std::vector<TargetCorner> found;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double reach = 0.7 * (mapped(discs->h, places[i] + Eigen::Vector2d(discs->radius, 0)) -
@@ -161,8 +177,7 @@ Found CircleGridFinder::find(const View& view) const {
     found.push_back(
         {static_cast<int>(i), discs->pixels[i], {places[i].x(), places[i].y(), 0.0}, reach});
   }
-  const std::string fault =
-      detail::discs_fault(view.image, *discs, places, settings_.target.quality);
+  const std::string fault = detail::discs_fault(image, *discs, places, settings_.target.quality);
   if (!fault.empty()) return refused("the " + grid + " is " + fault, marks_of(found));
   return observed(view, settings_.target, std::move(found));
 }

@@ -1,4 +1,4 @@
-// A Finder for grids of black discs, symmetric or asymmetric, as OpenCV draws them.
+// A Finder for grids of black discs on white, or white ones on black, symmetric or asymmetric, as OpenCV draws them.
 //
 //   const CircleGridFinder finder({.points_x = 4, .points_y = 11, .size = 0.02, .asymmetric = true});
 //
