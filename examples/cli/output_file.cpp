@@ -28,13 +28,6 @@ void check_output(const std::string& output, const std::vector<std::string>& inp
   throw OutputError(output + ": exists; use --force to replace it, or choose another name");
 }
 
-void check_picture(const std::string& output, const std::vector<std::string>& inputs, bool force) {
-  check_output(output, inputs, force);
-  const std::string ending = std::filesystem::path(output).extension().string();
-  if (ending == ".png" || ending == ".PNG") return;
-  throw OutputError(output + ": is written as PNG; let the name end in .png");
-}
-
 void check_page(const std::string& output, const std::vector<std::string>& inputs, bool force) {
   check_output(output, inputs, force);
   if (is_page(output)) return;

@@ -11,9 +11,6 @@ namespace kinecal::cli {
 /// @throws OutputError  if not
 void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force);
 
-/// The same for a picture, which is PNG.
-void check_picture(const std::string& output, const std::vector<std::string>& inputs, bool force);
-
 /// The same for a page, which is HTML.
 void check_page(const std::string& output, const std::vector<std::string>& inputs, bool force);
 

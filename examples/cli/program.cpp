@@ -639,7 +639,7 @@ void add_detect(CLI::App& command, DetectOptions& options) {
       ->type_name("FILE");
   command
       .add_option("--contact-sheet", options.sheet,
-                  "pictures of all detections, PNG; more than 24: sheet-2.png, ...")
+                  "page with pictures of all detections, HTML; more than 24: sheet-2.html, ...")
       ->type_name("FILE");
   command
       .add_option("--threads", options.threads,
@@ -736,9 +736,9 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
       ->check(kNotEmpty)
       ->type_name("FILE");
   command
-      .add_option(
-          "--contact-sheet", options.sheet,
-          "pictures of all views with what was found in them, PNG; more than 24: sheet-2.png, ...")
+      .add_option("--contact-sheet", options.sheet,
+                  "page with pictures of all views and what was found in them, HTML; more than 24: "
+                  "sheet-2.html, ...")
       ->check(kNotEmpty)
       ->type_name("FILE");
   command.add_flag("--force", options.force, "replace files that are there");

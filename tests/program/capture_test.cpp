@@ -52,7 +52,7 @@ TEST_F(CaptureProgram, CapturesUntilAnAccuracyIsReachedAndCalibrates) {
   simulate(40);
   const Outcome session = capture(
       "--calibrate sim/calibrate.yaml --until 'gripper 5 mm' --result calibrated "
-      "--contact-sheet views.png --report report.html");
+      "--contact-sheet views.html --report report.html");
   EXPECT_EQ(session.code, 0) << session.out << session.err;
   EXPECT_THAT(session.out,
               AllOf(HasSubstr("led_finder: 4 features"), HasSubstr("'gripper 5 mm' is reached"),
@@ -60,7 +60,7 @@ TEST_F(CaptureProgram, CapturesUntilAnAccuracyIsReachedAndCalibrates) {
                     ContainsRegex("pose 1 of 40: .*features\n"),
                     ContainsRegex("pose 2 of 40: .*; at most [0-9]+ min left\n")));
   EXPECT_LT(samples(), 40);
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "views.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "views.html"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "report.html"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "calibrated/calibrated.urdf"));
 }
@@ -265,9 +265,9 @@ TEST_F(CaptureProgram, OutputsAreCheckedBeforeTheRobotMoves) {
        {std::pair<std::string, std::string>(calibrate + "file", "file: is not a folder"),
         {calibrate + "file/result", "file/result: cannot be created"},
         {calibrate + "old", "old/calibrated.urdf: exists; use --force"},
-        {"--contact-sheet sheet.jpg", "sheet.jpg: is written as PNG"},
+        {"--contact-sheet sheet.jpg", "sheet.jpg: is written as HTML"},
         {"--contact-sheet folder --force", "folder: is a folder, not a file"},
-        {"--contact-sheet file/sheet.png", "file: is not a folder"}}) {
+        {"--contact-sheet file/sheet.html", "file: is not a folder"}}) {
     const Outcome refused = capture(options);
     EXPECT_EQ(refused.code, 1) << options;
     EXPECT_THAT(refused.err, HasSubstr(why)) << options;
