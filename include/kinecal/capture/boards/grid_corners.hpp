@@ -22,9 +22,6 @@ struct CornerGrid {
 /// The shortest side of a square, pixels.
 [[nodiscard]] double smallest_side(const CornerGrid& grid);
 
-/// The longest side of a square, pixels.
-[[nodiscard]] double longest_side(const CornerGrid& grid);
-
 /// True if corners are within a third of a square of a flat grid, and squares are uniformly dark
 /// and bright in turn: nine of ten pairs of neighbours.
 [[nodiscard]] bool is_checkerboard(const GrayImage& image, const CornerGrid& grid);
