@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -48,26 +47,26 @@ path.first, rect.first { stroke: #ff8c00; stroke-width: 2; }
 )";
 
 /// The coordinates of an SVG: there the first pixel ends at 1, in an image its centre is at 0.
-[[nodiscard]] Place place_of(const Mark& mark) {
+[[nodiscard]] ChartPoint point_of(const Mark& mark) {
   return {mark.u + 0.5, mark.v + 0.5};
 }
 
-/// True for places in the picture or not far from it.
-[[nodiscard]] bool is_near(const Place& place) {
+/// True for points in the picture or not far from it.
+[[nodiscard]] bool is_near(const ChartPoint& point) {
   constexpr double kMost = 2.0 * kMostThumbnailWidth;
-  return std::abs(place[0]) < kMost && std::abs(place[1]) < kMost;
+  return std::abs(point[0]) < kMost && std::abs(point[1]) < kMost;
 }
 
 /// A cross, open at its center.
 void append_mark(std::string& data, const Mark& mark) {
-  const auto [x, y] = place_of(mark);
-  for (const auto& [dx, dy] : {Place{-4.0, 0.0}, {2.0, 0.0}, {0.0, -4.0}, {0.0, 2.0}}) {
+  const auto [x, y] = point_of(mark);
+  for (const auto& [dx, dy] : {ChartPoint{-4.0, 0.0}, {2.0, 0.0}, {0.0, -4.0}, {0.0, 2.0}}) {
     data += "M" + coordinate(x + dx) + " " + coordinate(y + dy) + (dx == 0.0 ? "v2" : "h2");
   }
 }
 
 void draw_square(Drawing& drawing, const Mark& mark, double half, const char* classes) {
-  const auto [x, y] = place_of(mark);
+  const auto [x, y] = point_of(mark);
   drawing.rectangle({x - half, y - half}, 2.0 * half, 2.0 * half, classes);
 }
 
@@ -83,7 +82,7 @@ void draw_neighbours(Drawing& drawing, const std::vector<Mark>& marks) {
   std::nth_element(sorted.begin(), middle, sorted.end());
   constexpr double kNeighbours = 1.6;  // of the median
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    const Place from = place_of(marks[i]), to = place_of(marks[i + 1]);
+    const ChartPoint from = point_of(marks[i]), to = point_of(marks[i + 1]);
     const bool joined = steps[i] <= std::min<double>(kNeighbours * *middle, kThumbnailWidth);
     if (joined && is_near(from) && is_near(to)) drawing.line(from, to, "order");
   }
@@ -92,23 +91,23 @@ void draw_neighbours(Drawing& drawing, const std::vector<Mark>& marks) {
 /// The first corner, and an arrow past the next one: twice the way, at least 30 pixels.
 void draw_first(Drawing& drawing, const std::vector<Mark>& marks) {
   constexpr double kHalf = 7.0, kTimes = 2.0, kLeast = 30.0, kHead = 6.0;
-  const auto is_kept = [](const Mark& mark) { return !mark.dropped && is_near(place_of(mark)); };
+  const auto is_kept = [](const Mark& mark) { return !mark.dropped && is_near(point_of(mark)); };
   const auto first = std::find_if(marks.begin(), marks.end(), is_kept);
   if (first == marks.end()) return;
   draw_square(drawing, *first, kHalf, "first");
   const auto next = std::find_if(first + 1, marks.end(), is_kept);
   if (next == marks.end()) return;
-  const auto [u, v] = place_of(*first);
+  const auto [u, v] = point_of(*first);
   const double du = next->u - first->u, dv = next->v - first->v, way = std::hypot(du, dv);
   if (!(way > 0.0)) return;
   const double x = du / way, y = dv / way, length = std::max(kLeast, kTimes * way);
   const auto at = [&](double along, double side) {
-    return Place{u + along * x - side * y, v + along * y + side * x};
+    return ChartPoint{u + along * x - side * y, v + along * y + side * x};
   };
   drawing.line(at(kHalf, 0.0), at(length, 0.0), "first");
-  drawing.curve(
-      std::vector<Place>{at(length - kHead, kHead), at(length, 0.0), at(length - kHead, -kHead)},
-      "first");
+  drawing.curve(std::vector<ChartPoint>{at(length - kHead, kHead), at(length, 0.0),
+                                        at(length - kHead, -kHead)},
+                "first");
 }
 
 /// "3  a.png  54 found, 2 dropped, rms 0.08 px"
@@ -136,13 +135,13 @@ void draw_first(Drawing& drawing, const std::vector<Mark>& marks) {
   const std::string words = caption(view, number);
   Drawing drawing(fmt::format("view-{}", number), view.name, view.image.height, view.image.width);
   for (const GridLine& line : view.grid) {
-    const Place from = place_of({line.u0, line.v0}), to = place_of({line.u1, line.v1});
+    const ChartPoint from = point_of({line.u0, line.v0}), to = point_of({line.u1, line.v1});
     if (is_near(from) && is_near(to)) drawing.line(from, to, "grid");
   }
   if (found && !view.grid.empty()) draw_first(drawing, view.marks);
   if (found && view.grid.empty()) draw_neighbours(drawing, view.marks);
   for (const Mark& mark : view.marks) {
-    if (!is_near(place_of(mark))) continue;
+    if (!is_near(point_of(mark))) continue;
     std::string cross;
     append_mark(cross, mark);
     drawing.path(cross, mark.dropped ? "dropped" : "found", 0, mark.label);
