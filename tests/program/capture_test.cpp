@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 #include "kinecal/files/urdf/read_urdf.hpp"
@@ -161,20 +160,15 @@ TEST_F(CaptureProgram, ReplacesNoInputAndNoSecondOutput) {
   const std::string robot =
       " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
       "--robot simulated:sim/scene.yaml --force ";
-  const auto text = [&](const std::string& name) {
-    std::ostringstream all;
-    all << std::ifstream(folder_ / name).rdbuf();
-    return all.str();
-  };
   for (const std::string file : {"sim/poses.yaml", "sim/robot.urdf", "sim/scene.yaml"}) {
-    const std::string before = text(file);
+    const std::string before = read(file);
     for (const std::string outputs : {"-o s.yaml --contact-sheet ", "-o "}) {
       if (outputs == "-o " && file.ends_with("urdf")) continue;  // no format of samples
       const Outcome refused = run(kProgram + robot + outputs + file);
       EXPECT_EQ(refused.code, 1) << outputs << file;
       EXPECT_THAT(refused.err, HasSubstr("would replace an input")) << outputs << file;
     }
-    EXPECT_EQ(text(file), before);
+    EXPECT_EQ(read(file), before);
   }
   EXPECT_EQ(run(kProgram + robot + "-o s.yaml --contact-sheet s.yaml").code, 1);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "s.yaml"));

@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "kinecal/files/cameras/read_camera_file.hpp"
 #include "kinecal/files/images/png_bytes.hpp"
 #include "kinecal/files/images/read_image.hpp"

@@ -31,9 +31,6 @@ class SceneFile : public test::ProgramTest {
     ASSERT_EQ(kinecal("convert tracker.csv samples.yaml --columns columns.yaml").code, 0);
     ASSERT_EQ(kinecal("init --urdf ur5e.urdf --target tracker --arm tool0").code, 0);
   }
-  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run("timeout 60 " + test::kinecal_program() + " " + arguments + " < /dev/null");
-  }
   [[nodiscard]] Outcome calibrate(const std::string& more) const {
     return kinecal(
         "calibrate --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml --dry-run " +

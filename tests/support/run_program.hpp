@@ -68,9 +68,9 @@ class ProgramTest : public FolderTest {
  protected:
   /// Runs a program with arguments through the shell.
   [[nodiscard]] Outcome run(const std::string& call) const { return run_in(folder_, call); }
-  /// Runs kinecal with nobody to ask.
+  /// Runs kinecal with nobody to ask, for ten minutes at most.
   [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run(kinecal_program() + " " + arguments + " < /dev/null");
+    return run("timeout 600 " + kinecal_program() + " " + arguments + " < /dev/null");
   }
 };
 
