@@ -928,7 +928,7 @@ void add_describe(CLI::App& command, DescribeOptions& options) {
   command.add_flag("--force", options.force, "replace the file that is there");
 }
 
-/// An argument that begins like an option and is none of the command; empty if there is none.
+/// An argument that begins like an option but is not one of the command; empty if absent.
 std::string unknown_option(const CLI::App& command, const std::vector<std::string>& arguments) {
   for (auto argument = arguments.rbegin(); argument != arguments.rend(); ++argument) {
     std::string option = argument->substr(0, argument->find('='));

@@ -229,7 +229,7 @@ void report_faults(const ModelConfig& camera, const std::vector<TriedLens>& trie
 }
 
 /// The lenses from the simplest on: that of ordinary cameras, fisheyes, polynomials with many terms.  Each with a
-/// coefficient that may be superfluous, or none.
+/// coefficient that may be superfluous; empty if all are needed.
 constexpr std::array<std::array<std::string_view, 2>, 6> kLenses = {
     {{PlumbBob::kName, "k3"},
      {PlumbBob::kName, ""},
