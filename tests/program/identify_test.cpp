@@ -17,13 +17,9 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-class IdentifyProgram : public test::ProgramTest {
+class IdentifyProgram : public test::TrackerExampleTest {
  protected:
   IdentifyProgram() {
-    const fs::path examples = fs::path(test::source_folder()) / "examples";
-    fs::copy(examples / "csv/tracker.csv", folder_);
-    fs::copy(examples / "csv/columns.yaml", folder_);
-    fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
     EXPECT_EQ(kinecal("convert tracker.csv samples.yaml --columns columns.yaml").code, 0);
   }
   /// Writes calibrate.yaml without what it frees.

@@ -74,4 +74,15 @@ class ProgramTest : public FolderTest {
   }
 };
 
+/// In a folder with the example of a tracker: its table, the meaning of its columns, and the robot.
+class TrackerExampleTest : public ProgramTest {
+ protected:
+  TrackerExampleTest() {
+    const std::filesystem::path examples = std::filesystem::path(source_folder()) / "examples";
+    for (const char* file : {"csv/tracker.csv", "csv/columns.yaml", "robots/ur5e/ur5e.urdf"}) {
+      std::filesystem::copy(examples / file, folder_);
+    }
+  }
+};
+
 }  // namespace kinecal::test
