@@ -97,12 +97,12 @@ void draw_first(Drawing& drawing, const std::vector<Mark>& marks) {
   draw_square(drawing, *first, kHalf, "first");
   const auto next = std::find_if(first + 1, marks.end(), is_kept);
   if (next == marks.end()) return;
-  const auto [u, v] = point_of(*first);
+  const ChartPoint corner = point_of(*first);
   const double du = next->u - first->u, dv = next->v - first->v, way = std::hypot(du, dv);
   if (!(way > 0.0)) return;
   const double x = du / way, y = dv / way, length = std::max(kLeast, kTimes * way);
   const auto at = [&](double along, double side) {
-    return ChartPoint{u + along * x - side * y, v + along * y + side * x};
+    return ChartPoint{corner[0] + along * x - side * y, corner[1] + along * y + side * x};
   };
   drawing.line(at(kHalf, 0.0), at(length, 0.0), "first");
   drawing.curve(std::vector<ChartPoint>{at(length - kHead, kHead), at(length, 0.0),
