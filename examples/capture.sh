@@ -15,6 +15,6 @@ echo "== kinecal capture"
 "$kinecal" capture "$out/capture.yaml" --urdf "$out/robot.urdf" --poses "$out/poses.yaml" \
   --robot "simulated:$out/scene.yaml" -o "$out/samples.yaml" \
   --calibrate "$out/calibrate.yaml" --until "gripper 3 mm" --result "$out/calibrated" \
-  --contact-sheet "$out/views.png" --report "$out/report.html"
+  --contact-sheet "$out/views.html" --report "$out/report.html"
 echo
 echo "Look at it in a browser: $out/report.html"

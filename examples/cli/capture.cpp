@@ -188,7 +188,7 @@ NextPose next_pose(const CaptureOptions& options, const std::vector<CapturePose>
   };
 }
 
-/// The samples of an earlier session; none if there was none.
+/// The samples of an earlier session; empty if this is the first.
 std::vector<Sample> earlier_samples(const CaptureOptions& options) {
   if (!options.resume || !std::filesystem::exists(options.output)) return {};
   Diagnostics diagnostics;

@@ -16,7 +16,7 @@ class Checkpoints {
   /// @throws OutputError  if the folder cannot be made
   Checkpoints(std::filesystem::path folder, std::string identity);
 
-  /// Numbers of a shard; nullopt if there are none, or only a part of them.
+  /// Numbers of a shard; nullopt if absent or incomplete.
   [[nodiscard]] std::optional<std::vector<double>> find(const std::string& what, int shard) const;
 
   /// @throws OutputError  if they cannot be written

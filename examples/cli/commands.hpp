@@ -146,7 +146,7 @@ struct DetectOptions {
   std::string camera_link;  ///< that holds the camera; empty: its frame, if it is a link
   std::string frame;        ///< of the camera; empty: as recordings have it
   std::string output;       ///< samples
-  std::string sheet;        ///< PNG; empty: none
+  std::string sheet;        ///< HTML; empty: none
   int threads = 0;          ///< zero: one per core
   bool force = false;       ///< replace files
 };
@@ -284,7 +284,7 @@ struct CaptureOptions {
   std::string until;        ///< "gripper 1 mm"; empty: all poses
   std::string result;       ///< folder of that calibration
   std::string report;       ///< of that calibration: a page or JSON; empty: none
-  std::string sheet;        ///< PNG of all views; empty: none
+  std::string sheet;        ///< page of all views; empty: none
   double velocity = 1.0;    ///< factor
   bool manual = false;      ///< a person moves the robot
   bool resume = false;      ///< go on with the samples of the output

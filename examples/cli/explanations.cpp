@@ -112,7 +112,7 @@ class DecidingSets {
     return known_by(input_, choice_, chosen).correlation;
   }
 
-  /// The smallest set below the limit; nullopt if there is none.
+  /// The smallest set below the limit; nullopt if every set is above it.
   [[nodiscard]] std::optional<std::vector<int>> fewest(double limit) const {
     int count = 0;
     while (count <= most() && correlation(first(count)) >= limit) ++count;

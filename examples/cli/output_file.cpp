@@ -60,13 +60,6 @@ void check_report(const std::string& output, const std::vector<std::string>& inp
   check_output(output, inputs, force || is_there);
 }
 
-void check_picture(const std::string& output, const std::vector<std::string>& inputs, bool force) {
-  check_output(output, inputs, force);
-  const std::string ending = std::filesystem::path(output).extension().string();
-  if (ending == ".png" || ending == ".PNG") return;
-  throw OutputError(output + ": is written as PNG; let the name end in .png");
-}
-
 void check_page(const std::string& output, const std::vector<std::string>& inputs, bool force) {
   check_output(output, inputs, force);
   if (is_page(output)) return;

@@ -25,9 +25,6 @@ void write_output(const std::string& output, const std::string& content);
 /// The same for a report, which replaces one that is there already.
 void check_report(const std::string& output, const std::vector<std::string>& inputs, bool force);
 
-/// The same for a picture, which is PNG.
-void check_picture(const std::string& output, const std::vector<std::string>& inputs, bool force);
-
 /// The same for a page, which is HTML.
 void check_page(const std::string& output, const std::vector<std::string>& inputs, bool force);
 

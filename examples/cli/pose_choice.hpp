@@ -52,7 +52,7 @@ void drop_poses_of_have(StudyInput& input, double least_distance);
                                      const ProgressMeter& meter = {});
 
 /// The least number of poses with which the median of random sets is as good, and that median; one
-/// more than all if there is none.
+/// more than all if no number suffices.
 /// @param meter  called now and then
 [[nodiscard]] int random_poses_for(const PoseChoice& choice, double position,
                                    const ProgressMeter& meter = {});

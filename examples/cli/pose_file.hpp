@@ -32,7 +32,7 @@ void check_poses(const std::vector<CapturePose>& poses, const CaptureConfig& con
 [[nodiscard]] std::vector<CapturePose> read_pose_file(const std::string& path);
 
 /// Writes poses in the format of the file's name.  The file gets its name when it is complete; without
-/// poses there is none.
+/// poses, no file is written.
 /// @throws InputError   if the name asks for another format
 /// @throws OutputError  if the file cannot be written
 void write_pose_file(const std::string& path, const std::vector<CapturePose>& poses);

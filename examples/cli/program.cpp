@@ -663,7 +663,7 @@ void add_detect(CLI::App& command, DetectOptions& options) {
       ->type_name("FILE");
   command
       .add_option("--contact-sheet", options.sheet,
-                  "pictures of all detections, PNG; more than 24: sheet-2.png, ...")
+                  "page with pictures of all detections, HTML; more than 24: sheet-2.html, ...")
       ->type_name("FILE");
   command
       .add_option("--threads", options.threads,
@@ -760,9 +760,9 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
       ->check(kNotEmpty)
       ->type_name("FILE");
   command
-      .add_option(
-          "--contact-sheet", options.sheet,
-          "pictures of all views with what was found in them, PNG; more than 24: sheet-2.png, ...")
+      .add_option("--contact-sheet", options.sheet,
+                  "page with pictures of all views and what was found in them, HTML; more than 24: "
+                  "sheet-2.html, ...")
       ->check(kNotEmpty)
       ->type_name("FILE");
   command.add_flag("--force", options.force, "replace files that are there");
@@ -952,7 +952,7 @@ void add_describe(CLI::App& command, DescribeOptions& options) {
   command.add_flag("--force", options.force, "replace the file that is there");
 }
 
-/// An argument that begins like an option and is none of the command; empty if there is none.
+/// An argument that begins like an option but is not one of the command; empty if absent.
 std::string unknown_option(const CLI::App& command, const std::vector<std::string>& arguments) {
   for (auto argument = arguments.rbegin(); argument != arguments.rend(); ++argument) {
     std::string option = argument->substr(0, argument->find('='));

@@ -29,7 +29,7 @@ struct LinkTopics {
 ///   simulated:SCENE   a simulation; SCENE may be empty
 /// @param robot  by the URDF
 /// @param limits  of the joints' velocities by the URDF, rad/s or m/s
-/// @throws InputError       if the address is none of these, or the scene is wrong
+/// @throws InputError       if the address has another form, or the scene is wrong
 /// @throws ConnectionError  if the robot cannot be reached
 [[nodiscard]] AnyRobot connect(const std::string& address, const CaptureConfig& config,
                                const Robot& robot, const std::map<std::string, double>& limits,

@@ -9,10 +9,10 @@
 namespace kinecal::cli {
 
 void check_sheets(const std::string& output, const std::vector<std::string>& inputs, bool force) {
-  check_picture(output, inputs, force);
-  for (std::size_t number = 1; std::filesystem::exists(sheet_name(output, number)); ++number) {
-    check_picture(sheet_name(output, number), inputs, force);
-  }
+  std::size_t number = 0;
+  do {
+    check_page(sheet_name(output, number++), inputs, force);
+  } while (std::filesystem::exists(sheet_name(output, number)));
 }
 
 std::string write_sheets(const std::string& output, const std::vector<Thumbnail>& thumbnails) {

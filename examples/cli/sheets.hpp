@@ -9,12 +9,12 @@
 
 namespace kinecal::cli {
 
-/// Checks that contact sheets can be written: sheet.png, and sheet-2.png and so on if there are many views.
+/// Checks that contact sheets can be written: sheet.html, and sheet-2.html and so on if there are many views.
 /// @throws OutputError  if one is an input, or exists and may not be replaced
 void check_sheets(const std::string& output, const std::vector<std::string>& inputs, bool force);
 
 /// Writes contact sheets.  Removes those of an earlier call that had more.
-/// @returns  their names: "sheet.png, sheet-2.png"
+/// @returns  their names: "sheet.html, sheet-2.html"
 /// @throws OutputError  naming the file
 std::string write_sheets(const std::string& output, const std::vector<Thumbnail>& thumbnails);
 

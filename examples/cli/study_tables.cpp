@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/charts/spread.hpp"
@@ -21,7 +20,7 @@ namespace {
 // parameter that hangs on a prior may still vary more (1.36 times at 0.047, of 170 calibrations), which
 // beyond_chance() names.
 constexpr double kLinear = 0.06;
-constexpr int kForVariance = 2;  // trials without which there is none
+constexpr int kForVariance = 2;  // the fewest trials that have a variance
 
 std::vector<const StudyGroup*> of_robot(const StudyResult& result, int robot) {
   std::vector<const StudyGroup*> groups;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "commands.hpp"
 #include "input.hpp"
@@ -127,7 +126,7 @@ bool is_shown(const SmallestChange& change) {
 }
 
 /// "joints off by 0.012 deg ('lift') to 0.3 deg ('roll')": the smallest changes of joints that turn, of
-/// those that slide, or of frames; empty if there are none.
+/// those that slide, or of frames; empty if absent.
 std::string visible_text(const Drift& drift, bool is_frame, const std::string& unit) {
   std::vector<SmallestChange> all = drift.visible;
   std::erase_if(all, [&](const SmallestChange& change) {

@@ -21,12 +21,17 @@ namespace fs = std::filesystem;
 
 const fs::path kHeaders = fs::path(test::source_folder()) / "include/kinecal";
 
-/// A folder may include those before it.
-const std::vector<std::string> kFolders = {
-    "text",   "geometry", "kinematics", "parameters", "samples", "sensors",
-    "errors", "problem",  "evaluation", "crate",      "testing", "solve",
-    "trust",  "capture",  "study",      "files",      "config",  "robots",
-    "report", "tools",    "explain",    "procedure"};
+/// The folders in the order of ARCHITECTURE.md: each may include those before it.
+const std::vector<std::string> kFolders = [] {
+  std::ifstream file(fs::path(test::source_folder()) / "ARCHITECTURE.md");
+  const std::regex row(R"(\| `([a-z]+)/` \|.*)");
+  std::vector<std::string> folders;
+  std::smatch found;
+  for (std::string line; std::getline(file, line);) {
+    if (std::regex_match(line, found, row)) folders.push_back(found[1]);
+  }
+  return folders;
+}();
 /// For tests: no umbrella header of the whole tree includes it.
 const std::string kForTests = "testing";
 

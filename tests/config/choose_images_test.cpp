@@ -74,7 +74,7 @@ TEST(ChooseImages, MatricesThatDifferAreTriedWithoutDistortionToo) {
 }
 
 TEST(ChooseImages, WhatFitsAlikeIsLeftAsItIsSilently) {
-  CameraInfo weak = test::board_camera(), none = weak;
+  CameraInfo weak = test::camera_info(), none = weak;
   weak.d = {1e-5, 0, 0, 0, 0};
   for (const CameraInfo& info : {weak, none}) {
     Scenario scenario = board(info, ImageKind::raw);

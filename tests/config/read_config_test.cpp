@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "support/data.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -290,12 +291,11 @@ TEST(ReadConfig, GathersAllMistakesOfAFile) {
 // ---- the file ----
 
 TEST(ReadConfig, SyntaxErrorsThrowWithTheLine) {
-  try {
-    (void)read(with(kRos1, "free_params: [shoulder, elbow]", "free_params: [shoulder, elbow"));
-    FAIL() << "no InputError";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("calibrate.yaml:7: "));
-  }
+  EXPECT_THAT(
+      test::thrown<InputError>([&] {
+        (void)read(with(kRos1, "free_params: [shoulder, elbow]", "free_params: [shoulder, elbow"));
+      }),
+      HasSubstr("calibrate.yaml:7: "));
   EXPECT_THROW((void)read("a: b: c"), InputError);
   EXPECT_THROW((void)read("a: *nothing"), InputError);
   EXPECT_THROW((void)read(std::string(100000, '[')), InputError);
@@ -304,12 +304,8 @@ TEST(ReadConfig, SyntaxErrorsThrowWithTheLine) {
 TEST(ReadConfig, FilesThatCannotBeReadThrowWithTheirName) {
   Diagnostics diagnostics;
   for (const std::string path : {"/nowhere/calibrate.yaml", "/"}) {
-    try {
-      (void)read_config(path, diagnostics);
-      FAIL() << "no InputError for " << path;
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(path));
-    }
+    EXPECT_THAT(test::thrown<InputError>([&] { (void)read_config(path, diagnostics); }),
+                HasSubstr(path));
   }
 }
 

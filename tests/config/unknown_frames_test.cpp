@@ -175,7 +175,7 @@ TEST(UnknownFrames, FeaturesAtOnePlaceAreOne) {
 }
 
 TEST(UnknownFrames, RectifiedPixelsLieOnTheSameLineOfSight) {
-  Observation seen{"eye", {{"camera", {500.0, 100.0, 0.0}}}, test::board_camera()};
+  Observation seen{"eye", {{"camera", {500.0, 100.0, 0.0}}}, test::camera_info()};
   seen.camera->d = {-0.2, 0.05, 1e-3, -1e-3, 0.01};
   const auto ray = [](const Observation& eye) {
     Measurement<PinholeCamera, double> pixel;

@@ -9,6 +9,7 @@
 #include "support/open_scene.hpp"
 #include "support/scene.hpp"
 #include "support/sums.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -208,12 +209,7 @@ TEST(FeatureIdsOfASample, InCommonToNoSensorsLeaveTheBlockOut) {
 
 TEST(FeatureIdsOfASample, AreNamedInErrorsWithItsPlace) {
   const auto message = [](const Sample& sample) {
-    try {
-      (void)problem_of<double>(std::vector{sample});
-    } catch (const SampleError& e) {
-      return std::string(e.what());
-    }
-    return std::string("nothing was thrown");
+    return test::thrown<SampleError>([&] { (void)problem_of<double>(std::vector{sample}); });
   };
   Sample sample = numbered_samples(1)[0];
   sample.source = "s.yaml:7";

@@ -8,6 +8,7 @@
 #include "support/oracle_problem.hpp"
 #include "support/scene.hpp"
 #include "support/sums.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -132,12 +133,7 @@ TEST(FeatureSigma, OfAPointCountsInMetresAndNotForPixels) {
 }
 
 std::string message_of(Problem& problem, const Sample& sample) {
-  try {
-    problem.add_sample(sample);
-  } catch (const SampleError& e) {
-    return e.what();
-  }
-  return "no error";
+  return test::thrown<SampleError>([&] { problem.add_sample(sample); }, "no error");
 }
 
 TEST(FeatureSigma, MustBePositiveAndFinite) {

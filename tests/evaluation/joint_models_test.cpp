@@ -9,6 +9,7 @@
 #include "kinecal/kinematics/true_position.hpp"
 #include "support/oracle_problem.hpp"
 #include "support/sums.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -205,14 +206,13 @@ TEST_F(MeasuredJoints, OfACameraThatLagsGiveTheTime) {
 TEST_F(MeasuredJoints, SayWhatASampleLacks) {
   const auto message = [&](const std::string& name) {
     Problem of_models = problem({name});
-    try {
-      Sample sample = samples_.front();
-      sample.joint_moves.clear();
-      of_models.add_sample(sample);
-    } catch (const SampleError& e) {
-      return std::string(e.what());
-    }
-    return std::string();
+    return test::thrown<SampleError>(
+        [&] {
+          Sample sample = samples_.front();
+          sample.joint_moves.clear();
+          of_models.add_sample(sample);
+        },
+        "");
   };
   EXPECT_NE(message("camera_lag").find("velocity"), std::string::npos);
   EXPECT_NE(message("elbow_backlash").find("backlash needs samples in the order"),

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/thrown.hpp"
+
 namespace kinecal {
 namespace {
 
@@ -69,12 +71,9 @@ TEST(Parallel, ThrowsWhatAPieceThrowsAfterAllThreadsHaveEnded) {
         --running;
         if (piece == bad) throw std::runtime_error("piece " + std::to_string(piece));
       };
-      try {
-        detail::for_each_piece(10, threads, work);
-        FAIL() << "nothing was thrown";
-      } catch (const std::runtime_error& e) {
-        EXPECT_EQ(e.what(), "piece " + std::to_string(bad));
-      }
+      EXPECT_EQ(
+          test::thrown<std::runtime_error>([&] { detail::for_each_piece(10, threads, work); }),
+          "piece " + std::to_string(bad));
       EXPECT_EQ(running, 0);
     }
   }

@@ -8,6 +8,7 @@
 #include "kinecal/errors.hpp"
 #include "kinecal/evaluation/problem.hpp"
 #include "support/scene.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -59,12 +60,8 @@ TEST(Predict, NamesWhatIsUndefinedOrDoesNotFit) {
   Sample sample = some_sample(problem);
   values(problem.table().index("eye_fx")) = std::numeric_limits<double>::quiet_NaN();
   sample.source = "a.yaml:3";
-  try {
-    (void)predict(problem, values, sample);
-    ADD_FAILURE() << "nothing was thrown";
-  } catch (const std::domain_error& e) {
-    EXPECT_THAT(e.what(), StartsWith("a.yaml:3: error block 'reprojection': a residual is "));
-  }
+  EXPECT_THAT(test::thrown<std::domain_error>([&] { (void)predict(problem, values, sample); }),
+              StartsWith("a.yaml:3: error block 'reprojection': a residual is "));
   EXPECT_THROW((void)predict(problem, values.head(3), sample), std::invalid_argument);
   sample.joint_names.pop_back();
   EXPECT_THROW((void)predict(problem, values, sample), SampleError);

@@ -339,7 +339,7 @@ Outcome outcome_of(const Scene& scene, const Recording& of) {
   return outcome;
 }
 
-/// True if a mistake changes nothing, as one of points where there are none.
+/// True if a mistake changes nothing, such as one of points in samples without points.
 bool are_same(const Recording& a, const Recording& b) {
   const auto same = [](const Sample& one, const Sample& other) {
     const auto points = [](const Sample& sample) {

@@ -1,4 +1,4 @@
-// Feeds the reader of images with bytes that are none: PNG, JPEG, BMP and TIFF, by their first bytes.
+// Feeds the reader of images with damaged files: PNG, JPEG, BMP and TIFF, by their first bytes.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

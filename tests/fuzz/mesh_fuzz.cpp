@@ -1,4 +1,4 @@
-// Feeds the readers of meshes with bytes that are none.  The first byte says which reader: s(tl), d(ae) or
+// Feeds the readers of meshes with damaged files.  The first byte says which reader: s(tl), d(ae) or
 // o(bj).  What is read and cleaned can be drawn, thinned as well.
 #include <cmath>
 #include <cstddef>

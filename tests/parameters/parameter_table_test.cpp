@@ -4,6 +4,7 @@
 
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "support/robots.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -14,24 +15,15 @@ TEST(ParameterTable, FindsByNameAndNamesTheNearestOne) {
   table.add({.name = "wrist"});
   EXPECT_EQ(table.index("wrist"), 1);
   EXPECT_EQ(table.find("shoulder"), -1);
-  try {
-    (void)table.index("wirst");
-    FAIL();
-  } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(e.what(), "no parameter 'wirst'; did you mean 'wrist'?");
-  }
+  EXPECT_EQ(test::thrown<std::invalid_argument>([&] { (void)table.index("wirst"); }),
+            "no parameter 'wirst'; did you mean 'wrist'?");
   EXPECT_THROW(table.add({.name = "elbow"}), std::invalid_argument);
 }
 
 TEST(ParameterTable, RefusesNumbersThatCannotBeUsed) {
   ParameterTable table;
   const auto message = [&](const Parameter& parameter) -> std::string {
-    try {
-      table.add(parameter);
-    } catch (const std::invalid_argument& e) {
-      return e.what();
-    }
-    return "nothing was thrown";
+    return test::thrown<std::invalid_argument>([&] { table.add(parameter); });
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(message({.name = "elbow", .lower = 0.2, .upper = -0.1}),

@@ -8,22 +8,12 @@
 #include "kinecal/errors.hpp"
 #include "kinecal/evaluation/problem.hpp"
 #include "support/scene.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
 
 using testing::HasSubstr;
-
-/// The message of what a call throws.
-template <class Error, class Call>
-std::string message_of(Call&& call) {
-  try {
-    call();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "nothing was thrown";
-}
 
 std::vector<Sample> samples(int count = 3) {
   const Problem problem = test::scene_problem();
@@ -33,7 +23,7 @@ std::vector<Sample> samples(int count = 3) {
 
 TEST(Problem, NamesTheNearestSensorForAMisspeltOne) {
   Problem problem = test::scene_problem();
-  EXPECT_EQ(message_of<std::invalid_argument>([&] {
+  EXPECT_EQ(test::thrown<std::invalid_argument>([&] {
               problem.add_block("b", PointToPoint{}, {"camra", "arm"});
             }),
             "no sensor 'camra'; did you mean 'camera'?");
@@ -61,7 +51,8 @@ struct WithoutUnit {
 TEST(Problem, AsksForTheUnitOfABlock) {
   Problem problem = test::scene_problem();
   EXPECT_THAT(
-      message_of<std::invalid_argument>([&] { problem.add_block("b", WithoutUnit{}, {"camera"}); }),
+      test::thrown<std::invalid_argument>(
+          [&] { problem.add_block("b", WithoutUnit{}, {"camera"}); }),
       HasSubstr("error block 'b': its residual has no unit; write in it, for metres: static "
                 "constexpr const char* kUnit = \"m\";"));
   problem.add_block("b", WithoutUnit{}, {"camera"}, {.unit = "m"});
@@ -71,13 +62,13 @@ TEST(Problem, AsksForTheUnitOfABlock) {
 TEST(Problem, RefusesTheWrongNumberOrKindOfSensors) {
   Problem problem = test::scene_problem();
   EXPECT_THAT(
-      message_of<std::invalid_argument>([&] { problem.add_block("b", PointToPoint{}, {"arm"}); }),
+      test::thrown<std::invalid_argument>([&] { problem.add_block("b", PointToPoint{}, {"arm"}); }),
       HasSubstr("takes 2 sensors, not 1"));
-  EXPECT_THAT(message_of<std::invalid_argument>([&] {
+  EXPECT_THAT(test::thrown<std::invalid_argument>([&] {
                 problem.add_block("b", PointToPoint{}, {"arm", "eye"});
               }),
               HasSubstr("sensor 'eye', a camera2d, does not deliver points"));
-  EXPECT_THAT(message_of<std::invalid_argument>([&] {
+  EXPECT_THAT(test::thrown<std::invalid_argument>([&] {
                 problem.add_block("b", PointToPixel{}, {"arm", "camera"});
               }),
               HasSubstr("sensor 'camera', a camera3d, does not deliver pixels"));
@@ -100,7 +91,7 @@ struct Many {
 TEST(Problem, RefusesMoreParametersThanABlockCanHave) {
   Problem problem = test::scene_problem();
   EXPECT_THAT(
-      message_of<std::invalid_argument>([&] { problem.add_block("b", Many{}, {"camera"}); }),
+      test::thrown<std::invalid_argument>([&] { problem.add_block("b", Many{}, {"camera"}); }),
       HasSubstr("have 33 parameters; 32 are possible"));
 }
 
@@ -110,7 +101,7 @@ TEST(Problem, NamesTheNearestParameterForAMisspeltPrior) {
   problem.add_prior("elbow", {"elbow", 1.0, 1.0, 1.0});
   problem.add_prior("focus", {"camera_fx"});
   const auto message = [&](const char* param) {
-    return message_of<std::invalid_argument>([&] { problem.add_prior("keep", {param}); });
+    return test::thrown<std::invalid_argument>([&] { problem.add_prior("keep", {param}); });
   };
   EXPECT_EQ(
       message("elbw"),
@@ -129,7 +120,7 @@ TEST(Problem, RefusesAMeanOfWhatAPriorIsNotOn) {
   problem.add_prior("board", of_frame);
   of_joint.mean[1] = of_frame.mean[0] = 0.1;
   const auto message = [&](const Prior& prior) {
-    return message_of<std::invalid_argument>([&] { problem.add_prior("keep", prior); });
+    return test::thrown<std::invalid_argument>([&] { problem.add_prior("keep", prior); });
   };
   EXPECT_EQ(message(of_joint),
             "error block 'keep': a mean_x is given, but 'elbow' has no such parameter");
@@ -148,15 +139,16 @@ TEST(Problem, NamesTheNearestParameterForAMisspeltFreeOne) {
   for (const char* name : {"elbow", "camera_fx", "board_c"}) {
     EXPECT_NO_THROW((void)problem.evaluator(free(name))) << name;
   }
-  EXPECT_EQ(message_of<std::invalid_argument>([&] { (void)problem.evaluator(free("elbw")); }),
+  EXPECT_EQ(test::thrown<std::invalid_argument>([&] { (void)problem.evaluator(free("elbw")); }),
             "free parameter 'elbw' belongs to no joint that moves, free frame, sensor or error "
             "block; did you "
             "mean 'elbow'?");
   EXPECT_THAT(
-      message_of<std::invalid_argument>([&] { (void)problem.evaluator(free("camera_fz")); }),
+      test::thrown<std::invalid_argument>([&] { (void)problem.evaluator(free("camera_fz")); }),
       HasSubstr("free parameter 'camera_fz' belongs to no"));
-  EXPECT_THAT(message_of<std::invalid_argument>([&] { (void)problem.evaluator(FreeSet({0}, 3)); }),
-              HasSubstr("a free set of a table of 3 parameters; the problem's has"));
+  EXPECT_THAT(
+      test::thrown<std::invalid_argument>([&] { (void)problem.evaluator(FreeSet({0}, 3)); }),
+      HasSubstr("a free set of a table of 3 parameters; the problem's has"));
 }
 
 TEST(Problem, RefusesFewerPositionsThanJoints) {
@@ -166,7 +158,7 @@ TEST(Problem, RefusesFewerPositionsThanJoints) {
   sample.source = "s.yaml:3";
   sample.joint_positions.pop_back();
   EXPECT_THAT(
-      message_of<SampleError>([&] { problem.add_sample(sample); }),
+      test::thrown<SampleError>([&] { problem.add_sample(sample); }),
       testing::MatchesRegex("s.yaml:3: it has [0-9]+ joint names, but positions of [0-9]+"));
   EXPECT_EQ(sample.position(sample.joint_names.back()), std::nullopt);
 }
@@ -185,7 +177,7 @@ TEST(Problem, ARefusedSampleIsNotAdded) {
   Sample sample = samples()[0];
   sample.source = "s.yaml:3";
   sample.observations[0].features.pop_back();
-  EXPECT_THAT(message_of<SampleError>([&] { problem.add_sample(sample); }),
+  EXPECT_THAT(test::thrown<SampleError>([&] { problem.add_sample(sample); }),
               testing::AllOf(HasSubstr("s.yaml:3"), HasSubstr("sensor 'camera' has 4 features"),
                              HasSubstr("sensor 'arm' has 3")));
   EXPECT_EQ(problem.num_samples(), 0);
@@ -200,10 +192,10 @@ TEST(Problem, RefusesPointsThatSpanNoPlane) {
     line.observations[1].features[i].point =
         Vector3<double>(0.1, 0.2, 1.0) * (1.0 + 0.1 * double(i));
   }
-  EXPECT_EQ(message_of<SampleError>([&] { problem.add_sample(line); }),
+  EXPECT_EQ(test::thrown<SampleError>([&] { problem.add_sample(line); }),
             "s.yaml:9: error block 'floor': its points span no plane");
   few.observations[0].features.resize(2);
-  EXPECT_THAT(message_of<SampleError>([&] { problem.add_sample(few); }),
+  EXPECT_THAT(test::thrown<SampleError>([&] { problem.add_sample(few); }),
               HasSubstr("a plane takes three points or more"));
   problem.add_sample(samples()[2]);
   EXPECT_EQ(problem.samples_of(0), 1);
@@ -328,19 +320,20 @@ TEST(Problem, RefusesTwoBlocksOrPriorsOfOneName) {
   Problem problem = test::scene_problem();
   problem.add_block("b", PointToPoint{}, {"camera", "arm"});
   problem.add_prior("b", {.param = "elbow"});
-  EXPECT_EQ(message_of<std::invalid_argument>([&] {
+  EXPECT_EQ(test::thrown<std::invalid_argument>([&] {
               problem.add_block("b", PointToPixel{}, {"arm", "eye"});
             }),
             "two error blocks have the name 'b'; rename one of them");
-  EXPECT_EQ(message_of<std::invalid_argument>([&] { problem.add_prior("b", {.param = "wrist"}); }),
-            "two priors have the name 'b'; rename one of them");
+  EXPECT_EQ(
+      test::thrown<std::invalid_argument>([&] { problem.add_prior("b", {.param = "wrist"}); }),
+      "two priors have the name 'b'; rename one of them");
 }
 
 TEST(Problem, RefusesNumbersThatCannotBeUsed) {
   Problem problem = test::scene_problem();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto message = [&](const TermOptions& options) {
-    return message_of<std::invalid_argument>([&] {
+    return test::thrown<std::invalid_argument>([&] {
       problem.add_block("b", PointToPoint{}, {"camera", "arm"}, options);
     });
   };
@@ -350,20 +343,20 @@ TEST(Problem, RefusesNumbersThatCannotBeUsed) {
   EXPECT_EQ(message({.sigma = 0.0}), "error block 'b': sigma is 0; it must be positive");
   EXPECT_EQ(message({.loss = {LossType::huber, -1.0}}),
             "error block 'b': the scale of its loss is -1; it must be positive");
-  EXPECT_EQ(message_of<std::invalid_argument>(
+  EXPECT_EQ(test::thrown<std::invalid_argument>(
                 [&] { problem.add_prior("p", {.param = "elbow", .joint_scale = nan}); }),
             "error block 'p': a scale is nan; it must be finite");
   EXPECT_EQ(problem.num_terms(), 0);
   ParameterTable table = test::scene_table();
   table["elbow"].value = nan;
-  EXPECT_EQ(message_of<std::invalid_argument>([&] {
+  EXPECT_EQ(test::thrown<std::invalid_argument>([&] {
               Problem(test::mobile_manipulator(), "base_link", table, test::kSceneFrames);
             }),
             "parameter 'elbow': its value is not a finite number");
 }
 
 TEST(Problem, RefusesAFreeFrameThatNothingMoves) {
-  EXPECT_EQ(message_of<std::invalid_argument>([&] {
+  EXPECT_EQ(test::thrown<std::invalid_argument>([&] {
               Problem(test::mobile_manipulator(), "base_link", test::scene_table(),
                       {"camra_joint"});
             }),
@@ -380,10 +373,10 @@ TEST(Problem, NamesASampleWithoutASourceByItsNumber) {
   EXPECT_EQ(problem.source(0), "sample 0");
   Sample twice = sample;
   twice.observations.push_back(twice.observations[0]);
-  EXPECT_EQ(message_of<SampleError>([&] { problem.add_sample(twice); }),
+  EXPECT_EQ(test::thrown<SampleError>([&] { problem.add_sample(twice); }),
             "sample 1: it has two observations of sensor '" + twice.observations[0].sensor + "'");
   sample.joint_names.pop_back();
-  EXPECT_THAT(message_of<SampleError>([&] { problem.add_sample(sample); }),
+  EXPECT_THAT(test::thrown<SampleError>([&] { problem.add_sample(sample); }),
               testing::StartsWith("sample 1: it has "));
 }
 

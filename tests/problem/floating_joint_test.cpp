@@ -8,6 +8,7 @@
 #include "kinecal/errors.hpp"
 #include "kinecal/evaluation/problem.hpp"
 #include "support/scene.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -94,25 +95,17 @@ TEST(FloatingJointInAProblem, AMissingPoseIsNamedByItsJoint) {
   Problem problem = problem_of(true);
   Sample sample = samples(true).front();
   sample.poses = {{"flange_jont", sample.poses.begin()->second}};
-  try {
-    problem.add_sample(sample);
-    FAIL();
-  } catch (const SampleError& e) {
-    EXPECT_THAT(e.what(), HasSubstr("the pose of floating joint 'flange_joint' is not in the "
-                                    "sample; sensor 'arm' needs it; did you mean 'flange_jont'?"));
-  }
+  EXPECT_THAT(test::thrown<SampleError>([&] { problem.add_sample(sample); }),
+              HasSubstr("the pose of floating joint 'flange_joint' is not in the "
+                        "sample; sensor 'arm' needs it; did you mean 'flange_jont'?"));
 }
 
 TEST(FloatingJointInAProblem, APoseThatIsNotANumberIsNamedByItsJoint) {
   Problem problem = problem_of(true);
   Sample sample = samples(true).front();
   sample.poses["flange_joint"].translation.y() = std::nan("");
-  try {
-    problem.add_sample(sample);
-    FAIL();
-  } catch (const SampleError& e) {
-    EXPECT_THAT(e.what(), HasSubstr("the pose of floating joint 'flange_joint' is not a number"));
-  }
+  EXPECT_THAT(test::thrown<SampleError>([&] { problem.add_sample(sample); }),
+              HasSubstr("the pose of floating joint 'flange_joint' is not a number"));
 }
 
 TEST(FloatingJointInAProblem, ALagNeedsVelocitiesThatAPoseDoesNotHave) {

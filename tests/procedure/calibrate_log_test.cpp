@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "support/arm_scene.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -138,12 +138,10 @@ TEST(CalibrateLog, RefusesWhatCalibrateRefusesInTheSameWords) {
 TEST(CalibrateLog, NamesTheSampleOfAFileThatIsWrong) {
   ArmLog log(400);
   log.samples[390].joint_names[1] = "liftt";
-  try {
-    (void)log.calibrate({0, 1, 2}, 60);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("x.yaml:391"));
-  }
+  EXPECT_THAT(test::thrown<InputError>([&] {
+                (void)log.calibrate({0, 1, 2}, 60);
+              }),
+              HasSubstr("x.yaml:391"));
 }
 
 }  // namespace

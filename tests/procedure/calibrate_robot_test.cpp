@@ -9,6 +9,7 @@
 #include "kinecal/procedure/calibrated_files.hpp"
 #include "support/arm_scene.hpp"
 #include "support/real_recordings.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -26,12 +27,7 @@ CalibrationSetup arm_setup(int count) {
 }
 
 std::string input_error(const CalibrationSetup& setup, const CalibrationOptions& options = {}) {
-  try {
-    (void)calibrate_robot(setup, options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::thrown<InputError>([&] { (void)calibrate_robot(setup, options); }, "");
 }
 
 TEST(CalibrateRobot, FindsTheErrorsOfARobotAndGivesItsUrdf) {

@@ -11,6 +11,7 @@
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "support/data.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal::test {
 namespace {
@@ -72,24 +73,19 @@ TEST(SessionFollower, SaysWhatIsWrongWithASampleAndGoesOn) {
 TEST(SessionFollower, NamesALinkThatDoesNotExist) {
   KINECAL_NEEDS_DATA("fetch/synth");
   const FetchSession fetch;
-  try {
-    const SessionFollower follower(fetch.config, fetch.robot, "wrist_rol_link");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("did you mean 'wrist_roll_link'?"));
-  }
+  EXPECT_THAT(test::thrown<InputError>([&] {
+                const SessionFollower follower(fetch.config, fetch.robot, "wrist_rol_link");
+              }),
+              HasSubstr("did you mean 'wrist_roll_link'?"));
 }
 
 TEST(SessionFollower, DoesNotFollowABoardThatAPersonHolds) {
   KINECAL_NEEDS_DATA("fetch/synth");
   FetchSession fetch;
   fetch.config.per_sample.push_back({"board", {"calibrate.yaml", 2}});
-  try {
-    const SessionFollower follower(fetch.config, fetch.robot);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("calibrate.yaml:2: per_sample: a session cannot be"));
-  }
+  EXPECT_THAT(
+      test::thrown<InputError>([&] { const SessionFollower follower(fetch.config, fetch.robot); }),
+      HasSubstr("calibrate.yaml:2: per_sample: a session cannot be"));
 }
 
 TEST(Accuracy, IsANameANumberAndAUnit) {

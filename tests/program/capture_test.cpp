@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 #include "kinecal/files/urdf/read_urdf.hpp"
@@ -52,7 +51,7 @@ TEST_F(CaptureProgram, CapturesUntilAnAccuracyIsReachedAndCalibrates) {
   simulate(40);
   const Outcome session = capture(
       "--calibrate sim/calibrate.yaml --until 'gripper 5 mm' --result calibrated "
-      "--contact-sheet views.png --report report.html");
+      "--contact-sheet views.html --report report.html");
   EXPECT_EQ(session.code, 0) << session.out << session.err;
   EXPECT_THAT(session.out,
               AllOf(HasSubstr("led_finder: 4 features"), HasSubstr("'gripper 5 mm' is reached"),
@@ -60,7 +59,7 @@ TEST_F(CaptureProgram, CapturesUntilAnAccuracyIsReachedAndCalibrates) {
                     ContainsRegex("pose 1 of 40: .*features\n"),
                     ContainsRegex("pose 2 of 40: .*; at most [0-9]+ min left\n")));
   EXPECT_LT(samples(), 40);
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "views.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "views.html"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "report.html"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "calibrated/calibrated.urdf"));
 }
@@ -166,20 +165,15 @@ TEST_F(CaptureProgram, ReplacesNoInputAndNoSecondOutput) {
   const std::string robot =
       " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
       "--robot simulated:sim/scene.yaml --force ";
-  const auto text = [&](const std::string& name) {
-    std::ostringstream all;
-    all << std::ifstream(folder_ / name).rdbuf();
-    return all.str();
-  };
   for (const std::string file : {"sim/poses.yaml", "sim/robot.urdf", "sim/scene.yaml"}) {
-    const std::string before = text(file);
+    const std::string before = read(file);
     for (const std::string outputs : {"-o s.yaml --contact-sheet ", "-o "}) {
       if (outputs == "-o " && file.ends_with("urdf")) continue;  // no format of samples
       const Outcome refused = run(kProgram + robot + outputs + file);
       EXPECT_EQ(refused.code, 1) << outputs << file;
       EXPECT_THAT(refused.err, HasSubstr("would replace an input")) << outputs << file;
     }
-    EXPECT_EQ(text(file), before);
+    EXPECT_EQ(read(file), before);
   }
   EXPECT_EQ(run(kProgram + robot + "-o s.yaml --contact-sheet s.yaml").code, 1);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "s.yaml"));
@@ -270,9 +264,9 @@ TEST_F(CaptureProgram, OutputsAreCheckedBeforeTheRobotMoves) {
        {std::pair<std::string, std::string>(calibrate + "file", "file: is not a folder"),
         {calibrate + "file/result", "file/result: cannot be created"},
         {calibrate + "old", "old/calibrated.urdf: exists; use --force"},
-        {"--contact-sheet sheet.jpg", "sheet.jpg: is written as PNG"},
+        {"--contact-sheet sheet.jpg", "sheet.jpg: is written as HTML"},
         {"--contact-sheet folder --force", "folder: is a folder, not a file"},
-        {"--contact-sheet file/sheet.png", "file: is not a folder"}}) {
+        {"--contact-sheet file/sheet.html", "file: is not a folder"}}) {
     const Outcome refused = capture(options);
     EXPECT_EQ(refused.code, 1) << options;
     EXPECT_THAT(refused.err, HasSubstr(why)) << options;

@@ -2,11 +2,12 @@
 
 python3 check_schemas.py PROGRAM SOURCE
 
-1. What the examples have, the schemas accept.
+1. What the examples have, the schemas accept, also as a step of several.
 2. What the schemas name, the program reads: a file with every key has no unknown one.
-3. A misspelt key is refused by both.
+3. A misspelt key, a map in place of a value and a step within a step are refused by both.
 """
 import copy
+import functools
 import json
 import pathlib
 import re
@@ -29,8 +30,8 @@ def schema(name):
     return content
 
 
-def unknown_keys(kind, content):
-    """The keys that the program does not know in a file; "qqqqqq" also if it misses a name or type."""
+def run(kind, content):
+    """What the program says of a file."""
     file = work / f"{kind}.yaml"
     file.write_text(yaml.safe_dump(content, sort_keys=False))
     (work / "table.csv").write_text("a,b,c\n1,2,3\n")
@@ -44,27 +45,35 @@ def unknown_keys(kind, content):
     done = subprocess.run([program, *map(str, calls[kind])], capture_output=True, text=True)
     if done.returncode < 0:
         errors.append(f"{kind}: the program crashed")
+    return done
+
+
+def unknown_keys(kind, content):
+    """The keys that the program does not know in a file; "qqqqqq" also if it misses a name or type."""
+    done = run(kind, content)
     unknown = set(re.findall(r"unknown key '([^']*)'", done.stderr + done.stdout))
     missing = re.findall(r"\b(name|type) is missing", done.stderr)
     return unknown | {"qqqqqq"} if missing else unknown
 
 
-def example(of):
-    """A value that a schema accepts, with every key that it names."""
+def example(of, whole):
+    """A value that a part of a schema accepts, with every key that it names."""
+    if "$ref" in of:
+        return example(functools.reduce(dict.get, of["$ref"].split("/")[1:], whole), whole)
     if "anyOf" in of:
-        return example(of["anyOf"][0])
+        return example(of["anyOf"][0], whole)
     if "enum" in of:
         return of["enum"][0]
     kind = of.get("type", "integer")
     kind = kind[0] if isinstance(kind, list) else kind
     if kind == "object":
-        value = {key: example(inner) for key, inner in of.get("properties", {}).items()}
+        value = {key: example(inner, whole) for key, inner in of.get("properties", {}).items()}
         more = of.get("additionalProperties")
         if isinstance(more, dict) and not value:
-            value["some"] = example(more)
+            value["some"] = example(more, whole)
         return value
     if kind == "array":
-        return [example(of.get("items", {}))] * of.get("minItems", 1)
+        return [example(of.get("items", {}), whole)] * of.get("minItems", 1)
     return {"boolean": True, "string": of.get("examples", ["some"])[0]}.get(kind, 1)
 
 
@@ -73,39 +82,33 @@ def types_in(of):
     return of["properties"]["type"].get("examples", [None])
 
 
+def check_read(kind, contents):
+    """Each key is read in at least one of the contents that have it."""
+    left = set.intersection(*(unknown_keys(kind, content) for content in contents))
+    errors.extend(f"{kind}.schema.json: '{key}' is not read" for key in left)
+
+
 def check_every_key():
-    calibrate = schema("calibrate")["anyOf"][0]
-    block = calibrate["properties"]["error_blocks"]["items"]
-    whole = example(calibrate)
-    del whole["cal_steps"]
+    calibrate = schema("calibrate")
+    keys = calibrate["anyOf"][0]["properties"]
+    del keys["cal_steps"]
+    block = keys["error_blocks"]["items"]
+    whole = example(calibrate, calibrate)
     whole["models"] = [{**whole["models"][0], "type": "camera2d"}]
-    left = None
-    for kind in types_in(block):
-        whole["error_blocks"] = [{**example(block), "type": kind}]
-        found = unknown_keys("calibrate", whole)
-        left = found if left is None else left & found
-    errors.extend(f"calibrate.schema.json: '{key}' is not read" for key in left)
+    check_read("calibrate", [{**whole, "error_blocks": [{**example(block, calibrate), "type": kind}]}
+                             for kind in types_in(block)])
 
-    capture = schema("capture")["anyOf"][0]
-    finder = capture["properties"]["features"]["additionalProperties"]
-    left = None
-    for kind in types_in(finder):
-        whole = example(capture)
-        whole["features"] = {"found": {**example(finder), "type": kind, "leds": []}}
-        found = unknown_keys("capture", whole)
-        left = found if left is None else left & found
-    errors.extend(f"capture.schema.json: '{key}' is not read" for key in left)
+    capture = schema("capture")
+    finder = capture["anyOf"][0]["properties"]["features"]["additionalProperties"]
+    check_read("capture", [{**example(capture, capture), "features": {
+        "found": {**example(finder, capture), "type": kind, "leds": []}}} for kind in types_in(finder)])
 
-    columns = example(schema("columns"))
-    left = None
-    for kind in ("points", "pixels"):  # one has a unit
-        whole = copy.deepcopy(columns)
-        whole["observations"][0].pop("pixels" if kind == "points" else "points")
-        found = unknown_keys("columns", whole)
-        left = found if left is None else left & found
-    errors.extend(f"columns.schema.json: '{key}' is not read" for key in left)
-    errors.extend(f"scene.schema.json: '{key}' is not read"
-                  for key in unknown_keys("scene", example(schema("scene"))))
+    columns = example(schema("columns"), schema("columns"))
+    observation = columns["observations"][0]
+    check_read("columns", [{**columns, "observations": [
+        {key: value for key, value in observation.items() if key != other}]}
+        for other in ("points", "pixels")])  # one has a unit
+    check_read("scene", [example(schema("scene"), schema("scene"))])
 
 
 def keys_of(content, way=()):
@@ -120,13 +123,22 @@ def keys_of(content, way=()):
         yield from keys_of(content[0], (*way, 0))
 
 
-def misspelt(content, way):
+def changed(content, way, change):
+    """A copy in which `change` was applied to the map of a key."""
     content = copy.deepcopy(content)
     inner = content
     for key in way[:-1]:
         inner = inner[key]
-    inner["qqqqqq"] = inner.pop(way[-1])
+    change(inner, way[-1])
     return content
+
+
+def misspell(inner, key):
+    inner["qqqqqq"] = inner.pop(key)
+
+
+def replace_by_map(inner, key):
+    inner[key] = {"qqqqqq": {"qqqqqq": 1}}
 
 
 def check_examples():
@@ -137,15 +149,37 @@ def check_examples():
         for name in names:
             content = yaml.safe_load((source / "examples" / name).read_text())
             errors.extend(f"{name}: {e.json_path}: {e.message}" for e in validator.iter_errors(content))
+            accepted = run(kind, content).returncode == 0  # not the robot of another example
             for way in keys_of(content):
-                wrong = misspelt(content, way)
+                wrong = changed(content, way, misspell)
                 if validator.is_valid(wrong):
                     errors.append(f"{name}: the schema accepts {way} misspelt")
                 if "qqqqqq" not in unknown_keys(kind, wrong):
                     errors.append(f"{name}: the program accepts {way} misspelt")
+                wrong = changed(content, way, replace_by_map)
+                if accepted and validator.is_valid(wrong) != (run(kind, wrong).returncode == 0):
+                    errors.append(f"{name}: schema and program disagree about {way} as a map")
+
+
+def check_steps():
+    validator = jsonschema.Draft202012Validator(schema("calibrate"))
+    for file in sorted((source / "examples").rglob("calibrate.yaml")):
+        content = yaml.safe_load(file.read_text())
+        steps = {"cal_steps": {"first": content}}
+        within = {"cal_steps": {"first": steps}}
+        for right in (content, steps):
+            errors.extend(f"{file}: {e.json_path}: {e.message}" for e in validator.iter_errors(right))
+        if validator.is_valid(within) or "cal_steps" not in unknown_keys("calibrate", within):
+            errors.append(f"{file}: a step within a step is accepted")
+        for way in keys_of(content):
+            for change in (misspell, replace_by_map):
+                whole = changed(content, way, change)
+                if validator.is_valid(whole) != validator.is_valid({"cal_steps": {"first": whole}}):
+                    errors.append(f"{file}: {way} is accepted in one of step and file only")
 
 
 check_every_key()
 check_examples()
+check_steps()
 print("\n".join(errors))
 sys.exit(1 if errors else 0)

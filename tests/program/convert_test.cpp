@@ -14,15 +14,7 @@ using test::Outcome;
 using testing::AllOf;
 using testing::HasSubstr;
 
-class Convert : public test::ProgramTest {
- protected:
-  Convert() {
-    const fs::path examples = fs::path(test::source_folder()) / "examples";
-    fs::copy(examples / "csv/tracker.csv", folder_);
-    fs::copy(examples / "csv/columns.yaml", folder_);
-    fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
-  }
-};
+using Convert = test::TrackerExampleTest;
 
 TEST_F(Convert, TheExampleCalibratesAsTheReadmeSays) {
   const Outcome made = kinecal("convert tracker.csv samples.yaml --columns columns.yaml");

@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "kinecal/files/cameras/read_camera_file.hpp"
 #include "kinecal/files/images/png_bytes.hpp"
 #include "kinecal/files/images/read_image.hpp"
@@ -86,11 +84,11 @@ TEST_F(DetectRecording, EachStandstillGivesTheSampleOfItsPhotograph) {
   const std::vector<Sample> expected = test::samples_in(folder_ / "photos.yaml");
   for (const std::string bag : {"drive.mcap", "drive.bag"}) {
     const Outcome found = kinecal("detect photos/capture.yaml --bag " + bag + " -o " + bag +
-                                  ".yaml --contact-sheet " + bag + ".png");
+                                  ".yaml --contact-sheet " + bag + ".html");
     ASSERT_EQ(found.code, 0) << found.err;
     EXPECT_THAT(found.out, HasSubstr(": 4 of 4 standstills: "));
     EXPECT_THAT(found.err, HasSubstr("takes images from topic 'eye/image"));
-    EXPECT_EQ(read(bag + ".png").substr(1, 3), "PNG");
+    EXPECT_THAT(read(bag + ".html"), HasSubstr("4  " + bag + " at "));
     const std::vector<Sample> seen = test::samples_in(folder_ / (bag + ".yaml"));
     ASSERT_EQ(seen.size(), expected.size());
     for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -110,12 +108,12 @@ TEST_F(DetectRecording, EachStandstillGivesTheSampleOfItsPhotograph) {
 TEST_F(DetectRecording, PhotographsAndRecordingsGoTogetherOnAnyNumberOfThreads) {
   record("drive.mcap", Encoding::cdr, true);
   const std::string both = "detect photos/capture.yaml --bag drive.mcap" + kPhotos;
-  const Outcome found = kinecal(both + "--threads 1 --contact-sheet one.png -o one.yaml");
+  const Outcome found = kinecal(both + "--threads 1 --contact-sheet one.html -o one.yaml");
   ASSERT_EQ(found.code, 0) << found.err;
   EXPECT_THAT(found.out, HasSubstr(": 8 of 8 views: "));
-  ASSERT_EQ(kinecal(both + "--threads 3 --contact-sheet many.png -o many.yaml").code, 0);
+  ASSERT_EQ(kinecal(both + "--threads 3 --contact-sheet many.html -o many.yaml").code, 0);
   EXPECT_EQ(read("many.yaml"), read("one.yaml"));
-  EXPECT_EQ(read("many.png"), read("one.png"));
+  EXPECT_EQ(read("many.html"), read("one.html"));
 }
 
 TEST_F(DetectRecording, ATruncatedRecordingGivesWhatItHas) {

@@ -40,10 +40,10 @@ class Detect : public test::ProgramTest {
 #if defined(KINECAL_HAVE_PNG) && defined(KINECAL_HAVE_APRILTAG)
 TEST_F(Detect, PhotographsCalibrateWithoutAnInitialGuess) {
   photograph(12);
-  const Outcome found = detect("--contact-sheet sheet.png");
+  const Outcome found = detect("--contact-sheet sheet.html");
   EXPECT_EQ(found.code, 0) << found.err;
   EXPECT_THAT(found.out, HasSubstr("wrote samples.yaml: "));
-  EXPECT_EQ(read("sheet.png").substr(1, 3), "PNG");
+  EXPECT_THAT(read("sheet.html"), HasSubstr("12  0012.png  "));
   const Outcome checked = kinecal(
       "check --urdf photos/robot.urdf --config photos/calibrate.yaml --samples samples.yaml");
   EXPECT_EQ(checked.code, 0) << checked.err;
@@ -51,7 +51,7 @@ TEST_F(Detect, PhotographsCalibrateWithoutAnInitialGuess) {
 
 TEST_F(Detect, ADamagedImageIsNamedAndTheOthersAreUsed) {
   write("photos/images/0002.png", read("photos/images/0002.png").substr(0, 3000));
-  const Outcome found = detect("--contact-sheet sheet.png");
+  const Outcome found = detect("--contact-sheet sheet.html");
   EXPECT_EQ(found.code, 0);
   EXPECT_THAT(found.err, HasSubstr("warning: photos/images/0002.png: the PNG is damaged"));
   EXPECT_THAT(found.out, HasSubstr("2 of 3 images"));
@@ -72,11 +72,11 @@ TEST_F(Detect, WhereNothingIsFoundThereAreNoSamples) {
   std::string config = read("photos/capture.yaml");
   config += "    family: tag16h5\n";
   write("photos/capture.yaml", config);
-  const Outcome failed = detect("--contact-sheet sheet.png");
+  const Outcome failed = detect("--contact-sheet sheet.html");
   EXPECT_EQ(failed.code, 1);
   EXPECT_THAT(failed.err, HasSubstr("nothing was found in "));
   EXPECT_FALSE(fs::exists(folder_ / "samples.yaml"));
-  EXPECT_TRUE(fs::exists(folder_ / "sheet.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "sheet.html"));
 }
 #endif
 

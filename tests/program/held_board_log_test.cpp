@@ -9,6 +9,7 @@
 
 #include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/geometry/rpy.hpp"
+#include "support/camera_infos.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -50,14 +51,7 @@ std::vector<Sample> head_samples(std::size_t count) {
   const auto uniform = [&](double reach) {
     return std::uniform_real_distribution<double>(-reach, reach)(random);
   };
-  CameraInfo info;
-  info.width = 640;
-  info.height = 480;
-  info.distortion_model = "plumb_bob";
-  info.d = {0, 0, 0, 0, 0};
-  info.k = {600, 0, 320, 0, 600, 240, 0, 0, 1};
-  info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  info.p = {600, 0, 320, 0, 0, 600, 240, 0, 0, 0, 1, 0};
+  const CameraInfo info = test::camera_info(600.0, 600.0);
   const Matrix3<double> optical = rotation_from_rpy({-kRight, 0.0, -kRight});
   std::vector<Sample> samples;
   while (samples.size() < count) {

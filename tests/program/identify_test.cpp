@@ -17,24 +17,10 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-class IdentifyProgram : public test::ProgramTest {
+class IdentifyProgram : public test::TrackerExampleTest {
  protected:
   IdentifyProgram() {
-    const fs::path examples = fs::path(test::source_folder()) / "examples";
-    fs::copy(examples / "csv/tracker.csv", folder_);
-    fs::copy(examples / "csv/columns.yaml", folder_);
-    fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
     EXPECT_EQ(kinecal("convert tracker.csv samples.yaml --columns columns.yaml").code, 0);
-  }
-  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run("timeout 100 " + test::kinecal_program() + " " + arguments + " < /dev/null");
-  }
-  [[nodiscard]] std::string read(const std::string& file) const {
-    std::ifstream in(folder_ / file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  void write(const std::string& file, const std::string& text) const {
-    std::ofstream(folder_ / file) << text;
   }
   /// Writes calibrate.yaml without what it frees.
   /// @param with  in place of it

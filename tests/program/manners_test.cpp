@@ -23,18 +23,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-class Manners : public test::ProgramTest {
+class Manners : public test::TrackerExampleTest {
  protected:
-  Manners() {
-    const fs::path examples = fs::path(test::source_folder()) / "examples";
-    fs::copy(examples / "csv/tracker.csv", folder_);
-    fs::copy(examples / "csv/columns.yaml", folder_);
-    fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
-  }
-  /// The program, for ten seconds at most.
-  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run("timeout 60 " + test::kinecal_program() + " " + arguments + " < /dev/null");
-  }
   /// Writes samples.yaml and calibrate.yaml.
   void prepare() const {
     ASSERT_EQ(kinecal("convert tracker.csv samples.yaml --columns columns.yaml").code, 0);

@@ -11,12 +11,12 @@
 #include <filesystem>
 #include <fstream>
 #include <pugixml.hpp>
-#include <random>
 
 #include "kinecal/files/cameras/camera_info.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "support/calibrated.hpp"
+#include "support/camera_infos.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"
 #include "support/run_program.hpp"
@@ -104,14 +104,7 @@ std::vector<Sample> samples() {
     };
     const Pose<double> base_T_hand = forward_kinematics(arm, truth);
     const Pose<double> camera_T_base = forward_kinematics(camera, truth).inverse();
-    CameraInfo info;
-    info.width = 640;
-    info.height = 480;
-    info.distortion_model = "plumb_bob";
-    info.d = {0, 0, 0, 0, 0};
-    info.k = {550, 0, 320, 0, 550, 240, 0, 0, 1};
-    info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    info.p = {550, 0, 320, 0, 0, 550, 240, 0, 0, 0, 1, 0};
+    const CameraInfo info = test::camera_info(550.0, 550.0);
     Observation seen{"camera", {}, info}, held{"arm", {}};
     for (const Vector3<double>& p : {Vector3<double>(0.1, 0, 0), Vector3<double>(0.2, 0.05, 0),
                                      Vector3<double>(0.2, -0.05, 0.03)}) {

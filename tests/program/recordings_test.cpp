@@ -26,9 +26,6 @@ using testing::HasSubstr;
 
 class RecordingsProgram : public test::ProgramTest {
  protected:
-  [[nodiscard]] test::Outcome kinecal(const std::string& arguments) const {
-    return run(test::kinecal_program() + " " + arguments);
-  }
   [[nodiscard]] fs::path synth() const { return test::data_folder() / "fetch/synth"; }
 
   /// A folder as `ros2 bag record` makes it, with what an MCAP file holds.

@@ -30,10 +30,6 @@ class ReportPage : public test::ProgramTest {
                "--samples samples.yaml " +
                arguments + " < /dev/null");
   }
-  [[nodiscard]] std::string read(const std::string& file) const {
-    std::ifstream in(folder_ / file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
   /// Runs a script of tests/program/ with an interpreter.
   [[nodiscard]] Outcome script(const std::string& interpreter, const std::string& call) const {
     const fs::path folder = fs::path(test::source_folder()) / "tests/program";

@@ -19,20 +19,11 @@ using testing::Not;
 
 const std::string kMagic = "\x89MCAP0\r\n";
 
-class SceneFile : public test::ProgramTest {
+class SceneFile : public test::TrackerExampleTest {
  protected:
-  SceneFile() {
-    const fs::path examples = fs::path(test::source_folder()) / "examples";
-    fs::copy(examples / "csv/tracker.csv", folder_);
-    fs::copy(examples / "csv/columns.yaml", folder_);
-    fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
-  }
   void SetUp() override {
     ASSERT_EQ(kinecal("convert tracker.csv samples.yaml --columns columns.yaml").code, 0);
     ASSERT_EQ(kinecal("init --urdf ur5e.urdf --target tracker --arm tool0").code, 0);
-  }
-  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run("timeout 60 " + test::kinecal_program() + " " + arguments + " < /dev/null");
   }
   [[nodiscard]] Outcome calibrate(const std::string& more) const {
     return kinecal(

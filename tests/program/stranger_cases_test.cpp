@@ -46,9 +46,6 @@ class StrangerCases : public test::ProgramTest {
     }
     return all;
   }
-  [[nodiscard]] test::Outcome kinecal(const std::string& arguments) const {
-    return run(test::kinecal_program() + " " + arguments);
-  }
   /// Copies a file of a case into the test's folder.
   void take(const fs::path& of, const std::string& file) const { write(file, text(of / file)); }
   [[nodiscard]] test::Outcome calibrate() const {

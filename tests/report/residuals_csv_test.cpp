@@ -19,13 +19,18 @@ std::vector<std::string> cells(const std::string& line) {
   return all;
 }
 
-TEST(ResidualsCsv, HasARowForEachFeatureWithItsDistance) {
-  test::NoisyScene scene(12);
-  scene.solve();
+/// The table of a scene that is solved.
+std::string csv_of(const test::NoisyScene& scene) {
   const Findings findings =
       findings_of(test::mobile_manipulator(), scene.calibration,
                   judge_result(scene.calibration, scene.result, scene.samples), scene.samples);
-  std::istringstream text(residuals_csv(scene.calibration, findings));
+  return residuals_csv(scene.calibration, findings);
+}
+
+TEST(ResidualsCsv, HasARowForEachFeatureWithItsDistance) {
+  test::NoisyScene scene(12);
+  scene.solve();
+  std::istringstream text(csv_of(scene));
   std::string line;
   std::getline(text, line);
   EXPECT_EQ(line,
@@ -76,10 +81,7 @@ TEST(ResidualsCsv, NumbersFeaturesAsTheSampleListsThemAndGivesTheirIds) {
   std::reverse(seen[1].features.begin(), seen[1].features.end());  // the block's first sensor
   seen[0].features.erase(seen[0].features.begin());
   scene.solve();
-  const Findings findings =
-      findings_of(test::mobile_manipulator(), scene.calibration,
-                  judge_result(scene.calibration, scene.result, scene.samples), scene.samples);
-  std::istringstream text(residuals_csv(scene.calibration, findings));
+  std::istringstream text(csv_of(scene));
   std::string line;
   std::getline(text, line);
   EXPECT_EQ(line,

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kinecal/problem/mounted_sensor.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -36,12 +37,7 @@ Ids ids(const std::optional<Sample>& sample, const std::string& sensor) {
   return all;
 }
 std::string error(const Sample& sample, const std::vector<ComparedSensors>& blocks) {
-  try {
-    (void)pair_features(sample, blocks);
-  } catch (const SampleError& e) {
-    return e.what();
-  }
-  return "nothing was thrown";
+  return test::thrown<SampleError>([&] { (void)pair_features(sample, blocks); });
 }
 
 const std::vector<ComparedSensors> kPair = {{{"a", "b"}}};

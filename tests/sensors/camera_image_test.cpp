@@ -2,20 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "support/camera_infos.hpp"
+
 namespace kinecal {
 namespace {
 
-CameraInfo right_camera_of_a_stereo_pair() {
-  CameraInfo camera;
-  camera.width = 640;
-  camera.height = 480;
-  camera.distortion_model = "plumb_bob";
-  camera.d = {0.1, -0.2, 0.001, 1.0 / 3.0, 0.0};
-  camera.k = {554.2546911911879, 0.0, 320.5, 0.0, 554.5, 240.5, 0.0, 0.0, 1.0};
-  camera.r = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-  camera.p = {550.0, 0.0, 321.0, -33.0, 0.0, 551.0, 241.0, 5.51, 0.0, 0.0, 1.0, 0.0};
-  return camera;
-}
+using test::right_camera_of_a_stereo_pair;
 
 TEST(CalibratedCameraInfo, ChangesAreRelativeAndActOnKAndP) {
   const CameraInfo camera = right_camera_of_a_stereo_pair();

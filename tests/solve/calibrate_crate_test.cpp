@@ -1,5 +1,6 @@
 #include "kinecal/solve/calibrate_crate.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -7,6 +8,7 @@
 #include "kinecal/errors.hpp"
 #include "support/oracle.hpp"
 #include "support/static_robot.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -165,14 +167,8 @@ TEST(CalibrateCrate, RefusesSamplesThatDoNotFit) {
   EXPECT_THROW((void)calibrate(Tracked(), {}), std::invalid_argument);
   std::vector<Sample> samples = exact_samples({0, 0, 0, 0, 0}, 3);
   samples[1].joint_names[1] = "pna";
-  try {
-    (void)calibrate(Tracked(), samples);
-    FAIL() << "the joint is missing";
-  } catch (const SampleError& e) {
-    EXPECT_NE(std::string(e.what()).find("sample 1: joint 'pan' is not in the sample"),
-              std::string::npos)
-        << e.what();
-  }
+  EXPECT_THAT(test::thrown<SampleError>([&] { (void)calibrate(Tracked(), samples); }),
+              testing::HasSubstr("sample 1: joint 'pan' is not in the sample"));
   samples.resize(1);
   samples[0].observations.pop_back();
   EXPECT_THROW((void)calibrate(Tracked(), samples), std::invalid_argument) << "no tracker";

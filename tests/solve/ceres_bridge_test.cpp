@@ -8,6 +8,7 @@
 #include "kinecal/solve/solve.hpp"
 #include "support/scene.hpp"
 #include "support/sums.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -132,12 +133,8 @@ TEST(CeresBridge, RefusesABlockOfOtherParametersAndNamesTheNearestBlock) {
   EXPECT_THROW(bridge.add(problem, test::free_of(table, {"wrist", "camera_joint_y"}), zero),
                std::invalid_argument);
   EXPECT_EQ(ceres_problem.NumResidualBlocks(), 1);
-  try {
-    (void)bridge.block("elbw");
-    FAIL() << "nothing was thrown";
-  } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(e.what(), "no parameter block 'elbw'; did you mean 'elbow'?");
-  }
+  EXPECT_EQ(test::thrown<std::invalid_argument>([&] { (void)bridge.block("elbw"); }),
+            "no parameter block 'elbw'; did you mean 'elbow'?");
 }
 
 }  // namespace

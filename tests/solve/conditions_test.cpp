@@ -7,6 +7,7 @@
 #include "kinecal/solve/solve.hpp"
 #include "support/open_scene.hpp"
 #include "support/sums.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -66,12 +67,7 @@ TEST(Conditions, ThatAreMissingAreNamed) {
   Sample sample = bar_samples(problem, problem.table().values())[0];
   sample.source = "s.yaml:12";
   const auto message = [&] {
-    try {
-      problem.add_sample(sample);
-    } catch (const SampleError& e) {
-      return std::string(e.what());
-    }
-    return std::string("no error");
+    return test::thrown<SampleError>([&] { problem.add_sample(sample); }, "no error");
   };
   const double temperature = sample.conditions.at("temperature");
   sample.conditions.erase("temperature");

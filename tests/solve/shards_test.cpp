@@ -6,6 +6,7 @@
 #include <map>
 
 #include "support/scene_shards.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -107,12 +108,8 @@ TEST(Shards, ThatCannotBeReadLeaveTheValuesAlone) {
   };
   const std::vector<double> start = start_values();
   std::vector<double> values = start;
-  std::string why;
-  try {
-    (void)solve_shards(shards.shards(), scene.free(), values, start);
-  } catch (const std::runtime_error& error) {
-    why = error.what();
-  }
+  const std::string why = test::thrown<std::runtime_error>(
+      [&] { (void)solve_shards(shards.shards(), scene.free(), values, start); });
   EXPECT_EQ(why, "second.bag: is cut off");
   EXPECT_EQ(values, start);
 }

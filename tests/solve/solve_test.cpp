@@ -14,6 +14,7 @@
 #include "kinecal/solve/solve_with.ipp"
 #include "support/fisheye.hpp"
 #include "support/scene.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -612,13 +613,9 @@ TEST(MakeCalibration, NamesASensorThatIsObservedByNearlyThisName) {
     }
   }
   const FreeSet free = free_of(problem->table(), {"elbow"});
-  try {
-    (void)make_calibration(std::move(problem), free, samples);
-    ADD_FAILURE() << "nothing was thrown";
-  } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(e.what(),
-                 "no sample has an observation of sensor 'camera'; did you mean 'camra'?");
-  }
+  EXPECT_EQ(test::thrown<std::invalid_argument>(
+                [&] { (void)make_calibration(std::move(problem), free, samples); }),
+            "no sample has an observation of sensor 'camera'; did you mean 'camra'?");
 }
 
 TEST(Solve, RefusesAProblemWithoutSamples) {

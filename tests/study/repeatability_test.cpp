@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 
 #include "kinecal/study/study_summary.hpp"
@@ -101,7 +100,7 @@ TEST(Repeatability, FreeTargetsAreSixUnknownsOfWhichEachSensorHasResiduals) {
   }
 }
 
-/// Its features are not numbers, or there are none.
+/// Its features are not numbers, or absent.
 TEST(Repeatability, ASampleThatNoBlockUsesAddsNothing) {
   const SceneStudy study;
   const FreeSet free = study.scene.free();

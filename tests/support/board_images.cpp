@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/study/seeded_random.hpp"
 
 namespace kinecal::test {

@@ -7,7 +7,7 @@
 
 #include "kinecal/capture/view.hpp"
 #include "kinecal/geometry/pose.hpp"
-#include "kinecal/sensors/lens.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 
 namespace kinecal::test {
 

@@ -10,7 +10,7 @@ namespace kinecal::test {
 
 /// A lens with distortion, and a rectified image of another size.
 inline CameraInfo lens() {
-  CameraInfo info = board_camera();
+  CameraInfo info = camera_info();
   info.d = {-0.2, 0.05, 1e-3, -1e-3, 0.0};
   info.p = {520, 0, 325, 0, 0, 515, 236, 0, 0, 0, 1, 0};
   return info;

@@ -20,7 +20,7 @@ inline constexpr double kCornerNoise = 0.3;  // pixels
 /// A robot with errors, and what it measures.
 struct TrueFetch {
   Robot robot = read_urdf(source_folder() + "/examples/robots/fetch/fetch.urdf");
-  CameraInfo nominal = board_camera(), lens = nominal;
+  CameraInfo nominal = camera_info(), lens = nominal;
   std::map<std::string, double> truth;
   std::vector<Sample> samples, held_out;
 

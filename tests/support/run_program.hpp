@@ -68,9 +68,20 @@ class ProgramTest : public FolderTest {
  protected:
   /// Runs a program with arguments through the shell.
   [[nodiscard]] Outcome run(const std::string& call) const { return run_in(folder_, call); }
-  /// Runs kinecal with nobody to ask.
+  /// Runs kinecal with nobody to ask, for ten minutes at most.
   [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run(kinecal_program() + " " + arguments + " < /dev/null");
+    return run("timeout 600 " + kinecal_program() + " " + arguments + " < /dev/null");
+  }
+};
+
+/// In a folder with the example of a tracker: its table, the meaning of its columns, and the robot.
+class TrackerExampleTest : public ProgramTest {
+ protected:
+  TrackerExampleTest() {
+    const std::filesystem::path examples = std::filesystem::path(source_folder()) / "examples";
+    for (const char* file : {"csv/tracker.csv", "csv/columns.yaml", "robots/ur5e/ur5e.urdf"}) {
+      std::filesystem::copy(examples / file, folder_);
+    }
   }
 };
 

@@ -3,23 +3,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "support/camera_infos.hpp"
 #include "support/double_problem.hpp"
 #include "support/oracle.hpp"
 #include "support/robots.hpp"
 
 namespace kinecal::test {
-
-inline CameraInfo camera_info() {
-  CameraInfo info;
-  info.width = 640;
-  info.height = 480;
-  info.distortion_model = "plumb_bob";
-  info.d = {0.0, 0.0, 0.0, 0.0, 0.0};
-  info.k = {550, 0, 320, 0, 545, 240, 0, 0, 1};
-  info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  info.p = {550, 0, 320, 0, 0, 545, 240, 0, 0, 0, 1, 0};
-  return info;
-}
 
 /// The offsets, frames and camera parameters of the scene, all at zero.
 inline ParameterTable scene_table() {

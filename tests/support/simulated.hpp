@@ -158,7 +158,7 @@ inline bool observe(const Robot& robot, bool floor, const OracleValues<double>& 
   };
   const OraclePose<double> camera = pose("head_camera_rgb_optical_frame");
   const OraclePose<double> gripper = pose("gripper_led_frame");
-  const CameraInfo info = board_camera();
+  const CameraInfo info = camera_info();
   Observation arm{"arm", {}}, seen{"camera", {}, info};
   for (std::size_t f = 0; f < (floor ? 60 : kLeds.size()); ++f) {
     Vector3<double> p;

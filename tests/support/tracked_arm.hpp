@@ -101,11 +101,6 @@ class TrackedArm {
     offsets_[joint] += by;
     fresh = measured(std::move(fresh));
   }
-  /// Measures them with reflectors that are elsewhere in the tool, by so much more.
-  void shift_tool(const Vector3<double>& by) {
-    tool_shift_ = tool_shift_ + by;
-    fresh = measured(std::move(fresh));
-  }
   /// How far a slip moves the features of new samples: see slip_size().
   [[nodiscard]] double size_of(const std::string& joint, double slip) const {
     const Eigen::VectorXd at = values();
@@ -191,7 +186,7 @@ class TrackedArm {
           });
       Observation held{"arm", {}}, seen{"seen", {}};
       for (int k = 0; k < kind_.points; ++k) {
-        const Vector3<double> point = points[k] + tool_shift_, error = kind_.noise * vector();
+        const Vector3<double> point = points[k], error = kind_.noise * vector();
         held.features.push_back({"tool_link", points[k]});
         seen.features.push_back({"tracker_link", tip * point + error});
       }
@@ -202,8 +197,7 @@ class TrackedArm {
 
   ArmKind kind_;
   Robot model_, robot_;
-  std::map<std::string, double> offsets_, phases_;        ///< of joints, and of their gears
-  Vector3<double> tool_shift_ = Vector3<double>::Zero();  ///< of the reflectors, in the tool
+  std::map<std::string, double> offsets_, phases_;  ///< of joints, and of their gears
   std::mt19937 random_;
   std::normal_distribution<double> normal_;
   std::vector<Sample> old_;

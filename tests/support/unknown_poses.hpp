@@ -15,6 +15,7 @@
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "support/camera_infos.hpp"
 #include "support/data.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -127,18 +128,6 @@ error_blocks:
  - {name: pixels, type: chain3d_to_camera2d, model_3d: board_holder, model_2d: eye}
 )";
 
-inline CameraInfo board_camera() {
-  CameraInfo info;
-  info.width = 640;
-  info.height = 480;
-  info.distortion_model = "plumb_bob";
-  info.d = {0.0, 0.0, 0.0, 0.0, 0.0};
-  info.k = {550, 0, 320, 0, 545, 240, 0, 0, 1};
-  info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  info.p = {550, 0, 320, 0, 0, 545, 240, 0, 0, 0, 1, 0};
-  return info;
-}
-
 /// Corners of the board, 7 x 5, 3 cm apart.
 inline std::vector<Vector3<double>> corners() {
   std::vector<Vector3<double>> all;
@@ -192,7 +181,7 @@ inline Scenario board_scenario(bool in_hand, std::uint64_t seed, int count = 25)
                                : bracket * camera_T_board * board.inverse());
     sample.source = "board:" + std::to_string(n);
     sample.joint_positions[4] -= offset;
-    Observation holder{"board_holder", {}}, eye{"eye", {}, board_camera()};
+    Observation holder{"board_holder", {}}, eye{"eye", {}, camera_info()};
     for (const Vector3<double>& corner : corners()) {
       const Vector3<double> p = camera_T_board * corner;
       holder.features.push_back({"board", corner});

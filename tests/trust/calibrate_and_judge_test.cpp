@@ -3,12 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "kinecal/trust/judge_shards.hpp"
 #include "support/noisy_scene.hpp"
 #include "support/oracle.hpp"
 #include "support/static_robot.hpp"
+#include "support/thrown.hpp"
 #include "support/unknown_poses.hpp"
 
 namespace kinecal {
@@ -70,12 +69,9 @@ TEST(CalibrateAndJudge, FailsIfNoSampleIsLeft) {
   Calibration calibration = calibration_of(scene);
   ProcedureOptions options;
   options.exclude = {{0, "bad"}, {1, "bad"}};
-  try {
-    (void)calibrate_and_judge(calibration, scene.samples, options);
-    FAIL() << "nothing is left";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), HasSubstr("step 'calibration': the samples that are left"));
-  }
+  EXPECT_THAT(test::thrown<std::invalid_argument>(
+                  [&] { (void)calibrate_and_judge(calibration, scene.samples, options); }),
+              HasSubstr("step 'calibration': the samples that are left"));
 }
 
 TEST(CalibrateAndJudge, EstimatesTheNoiseOfABlockWithALoss) {

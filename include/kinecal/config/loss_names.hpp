@@ -17,7 +17,7 @@ inline constexpr std::array<std::pair<std::string_view, LossType>, 4> kLosses = 
      {"cauchy", LossType::cauchy},
      {"tukey", LossType::tukey}}};
 
-/// The loss of a name; none if there is no such loss.
+/// The loss of a name; LossType::none for any other name.
 [[nodiscard]] inline LossType loss_type(std::string_view name) {
   for (const auto& [of, type] : kLosses) {
     if (of == name) return type;

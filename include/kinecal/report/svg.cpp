@@ -15,14 +15,14 @@ namespace kinecal::detail {
 Drawing::Drawing(std::string name, std::string_view title, double height, double width)
     : name_(std::move(name)), title_(svg_escaped(title)), width_(width), height_(height) {}
 
-[[nodiscard]] inline std::string pair_text(Place place) {
+[[nodiscard]] inline std::string pair_text(ChartPoint place) {
   std::string text = coordinate(place[0]);
   text += ' ';
   append_coordinate(text, place[1]);
   return text;
 }
 
-void append_dot(std::string& data, Place place) {
+void append_dot(std::string& data, ChartPoint place) {
   data += 'M';
   append_coordinate(data, place[0]);
   data += ' ';
@@ -30,7 +30,7 @@ void append_dot(std::string& data, Place place) {
   data += "h0";  // round ends make it a dot
 }
 
-void append_cross(std::string& data, Place place) {
+void append_cross(std::string& data, ChartPoint place) {
   constexpr double kHalf = 3.5;
   const auto [x, y] = place;
   data += 'M' + pair_text({x - kHalf, y - kHalf}) + 'L' + pair_text({x + kHalf, y + kHalf}) + 'M' +
@@ -47,11 +47,11 @@ void Drawing::close(int sample, std::string_view title, const char* tag) {
   }
 }
 
-void Drawing::line(Place a, Place b, const char* classes) {
+void Drawing::line(ChartPoint a, ChartPoint b, const char* classes) {
   path("M" + pair_text(a) + "L" + pair_text(b), classes);
 }
 
-void Drawing::rectangle(Place corner, double width, double height, const char* classes,
+void Drawing::rectangle(ChartPoint corner, double width, double height, const char* classes,
                         std::string_view title) {
   marks_ += fmt::format(R"(<rect class="{}" x="{}" y="{}" width="{}" height="{}")", classes,
                         coordinate(corner[0]), coordinate(corner[1]),
@@ -59,17 +59,17 @@ void Drawing::rectangle(Place corner, double width, double height, const char* c
   close(0, title, "rect");
 }
 
-void Drawing::circle(Place center, double radius, const char* classes, int sample,
+void Drawing::circle(ChartPoint center, double radius, const char* classes, int sample,
                      std::string_view title) {
   marks_ += fmt::format(R"(<circle class="{}" cx="{}" cy="{}" r="{}")", classes,
                         coordinate(center[0]), coordinate(center[1]), coordinate(radius));
   close(sample, title, "circle");
 }
 
-void Drawing::curve(std::span<const Place> places, const char* classes) {
+void Drawing::curve(std::span<const ChartPoint> places, const char* classes) {
   std::string data;
   bool pen_down = false;
-  for (const Place& place : places) {
+  for (const ChartPoint& place : places) {
     const bool finite = std::isfinite(place[0]) && std::isfinite(place[1]);
     if (finite) data += (pen_down ? 'L' : 'M') + pair_text(place);
     pen_down = finite;
@@ -77,9 +77,9 @@ void Drawing::curve(std::span<const Place> places, const char* classes) {
   if (!data.empty()) path(data, classes);
 }
 
-void Drawing::area(std::span<const Place> places, const char* classes) {
+void Drawing::area(std::span<const ChartPoint> places, const char* classes) {
   std::string data;
-  for (const Place& place : places) data += (data.empty() ? 'M' : 'L') + pair_text(place);
+  for (const ChartPoint& place : places) data += (data.empty() ? 'M' : 'L') + pair_text(place);
   if (!data.empty()) path(data + "z", classes);
 }
 
@@ -92,7 +92,7 @@ void Drawing::path(std::string_view data, const char* classes, int sample, std::
   close(sample, title, "path");
 }
 
-void Drawing::text(Place place, std::string_view text, const char* classes, Anchor anchor,
+void Drawing::text(ChartPoint place, std::string_view text, const char* classes, Anchor anchor,
                    std::string_view title, double turned) {
   marks_ += fmt::format(R"(<text x="{}" y="{}")", coordinate(place[0]), coordinate(place[1]));
   if (*classes != '\0') marks_ += fmt::format(R"( class="{}")", classes);
@@ -107,7 +107,7 @@ void Drawing::text(Place place, std::string_view text, const char* classes, Anch
   marks_ += "</text>\n";
 }
 
-void Drawing::name(Place place, std::string_view name, double width, const char* classes,
+void Drawing::name(ChartPoint place, std::string_view name, double width, const char* classes,
                    Anchor anchor, double turned) {
   constexpr std::size_t kLongest = 60;
   const double font = std::string_view(classes).starts_with("small") ? kSmallFont : kFontSize;
@@ -128,7 +128,7 @@ void Drawing::close_group() {
   marks_ += "</g>\n";
 }
 
-void Drawing::hatching(Place corner, double width, double height, std::string_view title) {
+void Drawing::hatching(ChartPoint corner, double width, double height, std::string_view title) {
   has_hatching_ = true;
   marks_ += fmt::format(R"x(<rect x="{}" y="{}" width="{}" height="{}" fill="url(#{}-hatch)")x",
                         coordinate(corner[0]), coordinate(corner[1]), coordinate(width),

@@ -21,8 +21,8 @@ inline constexpr double kChartWidth = 480.0;
 /// Font sizes: normal, and those of the classes "small" and "tick".
 inline constexpr double kFontSize = 13.0, kSmallFont = 12.0;
 
-/// A place in a chart: x, y.
-using Place = std::array<double, 2>;
+/// A point of a chart: x, y.
+using ChartPoint = std::array<double, 2>;
 
 /// The position of a text relative to its place.
 enum class Anchor { start, middle, end };
@@ -39,29 +39,29 @@ class Drawing {
   /// @param title   plain text
   Drawing(std::string name, std::string_view title, double height, double width = kChartWidth);
 
-  void line(Place a, Place b, const char* classes);
-  void rectangle(Place corner, double width, double height, const char* classes,
+  void line(ChartPoint a, ChartPoint b, const char* classes);
+  void rectangle(ChartPoint corner, double width, double height, const char* classes,
                  std::string_view title = {});
-  void circle(Place center, double radius, const char* classes, int sample = 0,
+  void circle(ChartPoint center, double radius, const char* classes, int sample = 0,
               std::string_view title = {});
   /// A line through places; places that are not finite interrupt it.
-  void curve(std::span<const Place> places, const char* classes);
+  void curve(std::span<const ChartPoint> places, const char* classes);
   /// A filled shape.
-  void area(std::span<const Place> places, const char* classes);
+  void area(std::span<const ChartPoint> places, const char* classes);
   /// Any SVG path.
   /// @param sample  number of the sample that a click selects; 0: none
   void path(std::string_view data, const char* classes, int sample = 0,
             std::string_view title = {});
   /// @param title  tooltip, such as the full name; empty: none
-  void text(Place place, std::string_view text, const char* classes = "",
+  void text(ChartPoint place, std::string_view text, const char* classes = "",
             Anchor anchor = Anchor::start, std::string_view title = {}, double turned = 0.0);
   /// A name shortened to a width, with the full name as tooltip.
-  void name(Place place, std::string_view name, double width, const char* classes = "",
+  void name(ChartPoint place, std::string_view name, double width, const char* classes = "",
             Anchor anchor = Anchor::start, double turned = 0.0);
   void open_group(const char* classes);
   void close_group();
   /// Defines the hatching, once per chart; later shapes of class "hatched" use it.
-  void hatching(Place corner, double width, double height, std::string_view title);
+  void hatching(ChartPoint corner, double width, double height, std::string_view title);
 
   /// Grid, ticks and names of both axes; the name of y is above the axis.
   void axes(const PlotArea& area, const Axis& x, const Axis& y, std::string_view x_name,
@@ -84,8 +84,8 @@ class Drawing {
 };
 
 /// Marks of a sample as one path: dots where its features are.
-void append_dot(std::string& data, Place place);
+void append_dot(std::string& data, ChartPoint place);
 /// The same as a cross.
-void append_cross(std::string& data, Place place);
+void append_cross(std::string& data, ChartPoint place);
 
 }  // namespace kinecal::detail

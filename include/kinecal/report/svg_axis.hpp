@@ -36,7 +36,6 @@ class Axis {
   [[nodiscard]] double high() const { return high_; }
   [[nodiscard]] double from() const { return from_; }
   [[nodiscard]] double to() const { return to_; }
-  [[nodiscard]] bool is_logarithmic() const { return logarithmic_; }
 
  private:
   Axis(double low, double high, double from, double to, bool logarithmic);

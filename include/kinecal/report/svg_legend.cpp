@@ -6,7 +6,7 @@
 
 namespace kinecal::detail {
 
-inline void draw_swatch(Drawing& drawing, const LegendEntry& entry, Place middle) {
+inline void draw_swatch(Drawing& drawing, const LegendEntry& entry, ChartPoint middle) {
   const auto [x, y] = middle;
   switch (entry.swatch) {
     case Swatch::square:

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
-#include <cmath>
 
 #include "kinecal/study/measurement_noise.hpp"
 #include "kinecal/study/sample_rows.ipp"
@@ -21,7 +20,7 @@ class ExactSearch {
   explicit ExactSearch(ChangingSamples& changing) : changing_(changing) {
     for (const std::string& sensor : changing_.measuring()) {
       const bool is_oriented = mounted(sensor).sensor().is_oriented();
-      for (int axis = 0; axis < (is_oriented || is_rigid(sensor) ? 6 : 3); ++axis) {
+      for (int axis = 0; axis < (is_oriented || changing_.takes_planes(sensor) ? 6 : 3); ++axis) {
         moves_.push_back({sensor, axis});
       }
     }
@@ -58,17 +57,6 @@ class ExactSearch {
     return *std::find_if(all.begin(), all.end(),
                          [&](const MountedSensor& sensor) { return sensor.mount().name == name; });
   }
-  /// True if some block takes all features of a sensor as one plane.
-  [[nodiscard]] bool is_rigid(const std::string& sensor) const {
-    const AnyProblem& problem = changing_.problem();
-    for (int t = 0; t < problem.num_terms(); ++t) {
-      if (problem.term(t).pairs_features()) continue;
-      for (const int s : problem.term(t).sensors) {
-        if (problem.sensors()[static_cast<std::size_t>(s)].mount().name == sensor) return true;
-      }
-    }
-    return false;
-  }
 
   /// The change of a feature by a step along an axis: alone, or rotated with all others about the
   /// first.
@@ -78,7 +66,7 @@ class ExactSearch {
     const Vector3<double> axis = Vector3<double>::Unit(move.axis % 3);
     if (move.axis < 3) {
       change.point = axis;
-    } else if (is_rigid(move.sensor)) {
+    } else if (changing_.takes_planes(move.sensor)) {
       change.point = axis.cross(seen.features[place].point - pivot_of(seen));
     } else {
       change.rotation = axis;

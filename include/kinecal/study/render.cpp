@@ -98,7 +98,7 @@ struct Flat {
 };
 
 /// The directions in which a patch is visible; all if a part of it is beside or behind the camera,
-/// none if it is entirely behind.
+/// an empty window if it is entirely behind.
 Window window_of(const Flat& flat) {
   Window window;
   constexpr double kNearest = 0.01, kInfinite = std::numeric_limits<double>::infinity();

@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -111,7 +110,8 @@ class DesignRows {
     for (const MountedSensor& sensor : changing_.problem().sensors()) {
       const std::string& name = sensor.mount().name;
       if (!changing_.measuring().contains(name)) continue;
-      const bool together = !takes_planes(name);  // different features change different rows
+      const bool together =
+          !changing_.takes_planes(name);  // different features change different rows
       const std::size_t places = together ? 1 : most_features(name);
       for (std::size_t error = 0; error < most_errors(sensor); ++error) {
         for (std::size_t only = 0; only < places; ++only) {
@@ -169,17 +169,6 @@ class DesignRows {
             changing_.rows(changing_.with(name, change, -kHalf)), kHalf, false, &Stack::motions);
       }
     }
-  }
-
-  [[nodiscard]] bool takes_planes(const std::string& name) const {
-    const AnyProblem& problem = changing_.problem();
-    for (int t = 0; t < problem.num_terms(); ++t) {
-      if (problem.term(t).pairs_features()) continue;
-      for (const int s : problem.term(t).sensors) {
-        if (problem.sensors()[static_cast<std::size_t>(s)].mount().name == name) return true;
-      }
-    }
-    return false;
   }
 
   [[nodiscard]] std::size_t most_features(const std::string& name) {

@@ -55,6 +55,17 @@ class ChangingSamples {
   /// See measuring_sensors().
   [[nodiscard]] const std::set<std::string>& measuring() const { return measuring_; }
 
+  /// True if some block takes all features of a sensor as one plane.
+  [[nodiscard]] bool takes_planes(const std::string& sensor) const {
+    for (int t = 0; t < empty_->num_terms(); ++t) {
+      if (empty_->term(t).pairs_features()) continue;
+      for (const int s : empty_->term(t).sensors) {
+        if (empty_->sensors()[static_cast<std::size_t>(s)].mount().name == sensor) return true;
+      }
+    }
+    return false;
+  }
+
   /// The rows of these samples.
   /// @param free  columns of the Jacobian; nullptr: residuals only
   [[nodiscard]] StudyRows rows(const std::vector<Sample>& samples,

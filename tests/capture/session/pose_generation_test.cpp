@@ -1,5 +1,6 @@
 #include "kinecal/capture/session/pose_generation.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "kinecal/capture/session/robot_body.hpp"
 #include "support/robots.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -112,12 +114,10 @@ TEST(PoseGeneration, SaysWhatIsWrongIfThereIsNone) {
   ViewGoal goal = board_in_hand();
   goal.farthest = 0.26;
   goal.nearest = 5.0;
-  try {
-    static_cast<void>(poses_with_view_of(test::mobile_manipulator(), goal, 1));
-    FAIL() << "there is no such pose";
-  } catch (const std::runtime_error& e) {
-    EXPECT_NE(std::string(e.what()).find("too near"), std::string::npos) << e.what();
-  }
+  EXPECT_THAT(test::thrown<std::runtime_error>([&] {
+                static_cast<void>(poses_with_view_of(test::mobile_manipulator(), goal, 1));
+              }),
+              testing::HasSubstr("too near"));
   goal = board_in_hand();
   goal.points.clear();
   EXPECT_THROW(static_cast<void>(poses_with_view_of(test::mobile_manipulator(), goal, 1)),

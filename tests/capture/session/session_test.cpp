@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "support/thrown.hpp"
 #include "support/toy_robot.hpp"
 
 namespace kinecal {
@@ -139,12 +140,7 @@ TEST(Session, DropsASampleIfAJointMovesWhileFindersLook) {
 TEST(Session, EndsWhenAStreamIsSilentInTwoPoses) {
   ToySession session;
   session.arm.readings_left = 200;
-  std::string why;
-  try {
-    session.run(five_poses());
-  } catch (const ConnectionError& error) {
-    why = error.what();
-  }
+  const std::string why = test::thrown<ConnectionError>([&] { session.run(five_poses()); });
   EXPECT_THAT(why, AllOf(HasSubstr("no joint states since 1000"), HasSubstr("in two poses")));
   ASSERT_GT(session.samples.size(), 0u);
   ASSERT_EQ(session.captured.size(), session.samples.size() + 2) << "not all that were left";
@@ -182,12 +178,7 @@ TEST(Session, AStreamThatDeliversBetweenItsSilencesOnlySkipsPoses) {
 
 /// Why a session ends without hope; empty if it does not.
 std::string hopeless(ToySession& session, const std::vector<CapturePose>& poses) {
-  try {
-    session.run(poses);
-  } catch (const HopelessError& error) {
-    return error.what();
-  }
-  return "";
+  return test::thrown<HopelessError>([&] { session.run(poses); }, "");
 }
 
 TEST(Session, EndsWhenThreePosesFailAlikeAndNothingWasFound) {

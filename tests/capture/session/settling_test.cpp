@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/thrown.hpp"
 #include "support/toy_robot.hpp"
 
 namespace kinecal {
@@ -13,17 +14,6 @@ using test::ToyArm;
 using test::ToyCamera;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-/// What a PoseError says.
-template <class F>
-std::string pose_error(F&& f) {
-  try {
-    f();
-  } catch (const PoseError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 JointTarget target(double pan, double tilt) {
   return {{"pan", "tilt"}, {pan, tilt}};
@@ -52,18 +42,18 @@ TEST(Settling, NamesTheJointThatDoesNotArrive) {
   ToyArm arm;
   arm.stuck = "tilt";
   arm.move(target(0.5, 0.8));
-  EXPECT_THAT(pose_error([&] { (void)settle_joints(arm, target(0.5, 0.8), arm.now); }),
+  EXPECT_THAT(test::thrown<PoseError>([&] { (void)settle_joints(arm, target(0.5, 0.8), arm.now); }),
               AllOf(HasSubstr("joint 'tilt' did not arrive"), HasSubstr("0.8 was asked for")));
 }
 
 TEST(Settling, NamesWhatDoesNotStopOrIsNotMeasured) {
   ToyArm arm;
   arm.creeping = "pan";
-  EXPECT_THAT(pose_error([&] { (void)settle_joints(arm, {}, arm.now); }),
+  EXPECT_THAT(test::thrown<PoseError>([&] { (void)settle_joints(arm, {}, arm.now); }),
               HasSubstr("joints do not stop; waited 30"));
   ToyArm other;
   const JointTarget misspelt{{"tlit"}, {0.0}};
-  EXPECT_THAT(pose_error([&] { (void)settle_joints(other, misspelt, other.now); }),
+  EXPECT_THAT(test::thrown<PoseError>([&] { (void)settle_joints(other, misspelt, other.now); }),
               AllOf(HasSubstr("joint 'tlit' of the pose is not measured"), HasSubstr("'tilt'")));
 }
 
@@ -92,11 +82,11 @@ TEST(Settling, SaysThatTheImageDoesNotRestOrHasAnotherClock) {
   ToyCamera camera{arm};
   const auto next = [&](Stamp after) { return camera.next_view(after); };
   camera.flickers = true;
-  EXPECT_THAT(pose_error([&] { (void)settle_image(next, arm.now); }),
+  EXPECT_THAT(test::thrown<PoseError>([&] { (void)settle_image(next, arm.now); }),
               HasSubstr("the image does not come to rest"));
   camera.flickers = false;
   camera.ahead = std::chrono::seconds(100);
-  EXPECT_THAT(pose_error([&] { (void)settle_image(next, arm.now); }),
+  EXPECT_THAT(test::thrown<PoseError>([&] { (void)settle_image(next, arm.now); }),
               HasSubstr("the camera's stamps are 100 s ahead"));
 }
 
@@ -107,7 +97,7 @@ TEST(Settling, SaysThatTheSizeOfTheImageChanges) {
     camera.size += 2;
     return camera.next_view(after);
   };
-  EXPECT_THAT(pose_error([&] { (void)settle_image(next, arm.now); }),
+  EXPECT_THAT(test::thrown<PoseError>([&] { (void)settle_image(next, arm.now); }),
               HasSubstr("changes from 66 x 66 to 68 x 68"));
 }
 

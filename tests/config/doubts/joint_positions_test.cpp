@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "support/arm_scene.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -225,13 +226,9 @@ TEST_F(JointPositions, ThatStopWhileOtherJointsMoveAreADoubtThatAFitRefutes) {
 TEST_F(JointPositions, UnderAMisspeltShortNameAreAnErrorThatNamesIt) {
   replace(urdf, "\"pan\"", "\"a3\"");
   for (Sample& sample : samples) sample.joint_names[0] = "a33";
-  try {
-    (void)found();
-    FAIL() << "not refused";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("joint 'a3' is not in the sample"),
-                                    HasSubstr("; did you mean 'a33'?")));
-  }
+  EXPECT_THAT(
+      test::thrown<InputError>([&] { (void)found(); }),
+      AllOf(HasSubstr("joint 'a3' is not in the sample"), HasSubstr("; did you mean 'a33'?")));
 }
 
 TEST_F(JointPositions, OfAJointThatNeverMovesAreADoubtIfItsOffsetIsFree) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/hostile_names.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -31,12 +32,7 @@ std::string with(const std::string& text, const std::vector<LaunchSetting>& sett
 }
 
 std::string refusal(const std::string& text, const std::vector<LaunchSetting>& settings) {
-  try {
-    (void)with(text, settings);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::thrown<InputError>([&] { (void)with(text, settings); }, "(not refused)");
 }
 
 TEST(LaunchText, ChangesValuesAndNoOtherByte) {

@@ -27,7 +27,7 @@ class FindMesh : public test::FolderTest {
     write("ws/secret.stl", "x");
   }
   [[nodiscard]] fs::path mesh() const { return root_ / "ws/fetch_description/meshes/base.stl"; }
-  /// The file that is found, or why there is none.
+  /// The file that is found, or the error.
   [[nodiscard]] static std::string found(const std::string& name, const MeshPlaces& places) {
     try {
       return find_mesh(name, places).string();

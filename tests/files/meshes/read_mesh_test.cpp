@@ -11,6 +11,7 @@
 #include "support/meshes.hpp"
 #include "support/repetitions.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -32,12 +33,7 @@ class ReadMesh : public test::FolderTest {
   /// Why a file is refused.
   [[nodiscard]] std::string refusal(const std::string& name, const std::string& bytes,
                                     const MeshLimits& limits = {}) const {
-    try {
-      (void)read_bytes(name, bytes, limits);
-    } catch (const MeshError& e) {
-      return e.what();
-    }
-    return "read";
+    return test::thrown<MeshError>([&] { (void)read_bytes(name, bytes, limits); }, "read");
   }
   /// Indices are those of vertices, and all numbers finite.
   static void expect_valid(const Mesh& mesh) {

@@ -6,6 +6,7 @@
 
 #include "kinecal/files/messages/encode.hpp"
 #include "kinecal/files/messages/known_definitions.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -163,12 +164,8 @@ TEST(Decode, SaysWhichCdrItCannotRead) {
   const MessageDefinition definition = parse_definition("a/B", "int8 x\n");
   const auto refusal = [&](unsigned char kind) -> std::string {
     const std::array<unsigned char, 8> bytes = {0, kind, 0, 0, 0, 0, 0, 0};
-    try {
-      (void)decode(definition, Encoding::cdr, std::as_bytes(std::span(bytes)));
-    } catch (const BytesError& e) {
-      return e.what();
-    }
-    return "";
+    return test::thrown<BytesError>(
+        [&] { (void)decode(definition, Encoding::cdr, std::as_bytes(std::span(bytes))); }, "");
   };
   EXPECT_EQ(refusal(0), "");
   EXPECT_EQ(refusal(1), "");

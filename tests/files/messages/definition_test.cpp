@@ -6,6 +6,7 @@
 
 #include "kinecal/files/messages/known_definitions.hpp"
 #include "kinecal/files/messages/known_messages.ipp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -23,12 +24,7 @@ std::vector<std::string> field_names(const MessageType& type) {
 
 /// What is thrown for a text.
 std::string refusal(const std::string& text) {
-  try {
-    (void)parse_definition("a/Type", text);
-  } catch (const DefinitionError& e) {
-    return e.what();
-  }
-  return "nothing";
+  return test::thrown<DefinitionError>([&] { (void)parse_definition("a/Type", text); }, "nothing");
 }
 
 TEST(Definition, HasFieldsListsAndOtherMessagesButNoConstantsAndComments) {

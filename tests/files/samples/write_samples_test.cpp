@@ -14,6 +14,7 @@
 
 #include "kinecal/files/samples/read_samples.hpp"
 #include "support/data.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -167,13 +168,10 @@ TEST(WriteSamples, SeparatorFollowsEachSampleAndKeysAreThoseOfRos1) {
 
 TEST(WriteSamples, NamesAndPositionsOfDifferentLengthAreRefused) {
   std::ostringstream out;
-  try {
-    write_samples(out, {{{"a", "b"}, {0.5}, {}, "recorded.yaml:7"}});
-    FAIL() << "it was written";
-  } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(e.what(),
-                 "sample recorded.yaml:7: 2 joint names but 1 position; it cannot be written");
-  }
+  EXPECT_EQ(test::thrown<std::invalid_argument>([&] {
+              write_samples(out, {{{"a", "b"}, {0.5}, {}, "recorded.yaml:7"}});
+            }),
+            "sample recorded.yaml:7: 2 joint names but 1 position; it cannot be written");
 }
 
 void expect_same_file(const std::filesystem::path& path) {

@@ -22,6 +22,7 @@
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/kinematics/joint_state.hpp"
 #include "support/data.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -374,24 +375,19 @@ TEST(PatchUrdfRos2Control, AnOffsetInTicksIsLeftToItsDriver) {
       driven_joint("<joint name='j'><param name='offset'>2048</param></joint>");
   const std::vector<JointPatch> offset = {{"j", 0.25, {}}};
   EXPECT_EQ(patched(text, offset, OffsetStyle::as_read), patched(text, offset));
-  try {
-    (void)patched(text, offset, OffsetStyle::ros2_control);
-    FAIL() << "accepted";
-  } catch (const InputError& e) {
-    EXPECT_STREQ(e.what(),
-                 "arm.urdf:3: joint 'j': offset '2048' of <ros2_control> is not in "
-                 "radians; use --offsets origin");
-  }
+  EXPECT_EQ(
+      test::thrown<InputError>([&] { (void)patched(text, offset, OffsetStyle::ros2_control); }),
+      "arm.urdf:3: joint 'j': offset '2048' of <ros2_control> is not in "
+      "radians; use --offsets origin");
 }
 
 TEST(PatchUrdfRos2Control, AJointThatItDoesNotHaveIsAnError) {
-  try {
-    (void)patched(driven_joint("<joint name='jj'/>"), {{"j", 0.25, {}}}, OffsetStyle::ros2_control);
-    FAIL() << "accepted";
-  } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), AllOf(StartsWith("arm.urdf: <ros2_control> has no joint 'j'"),
-                                HasSubstr("--offsets origin")));
-  }
+  EXPECT_THAT(test::thrown<InputError>([&] {
+                (void)patched(driven_joint("<joint name='jj'/>"), {{"j", 0.25, {}}},
+                              OffsetStyle::ros2_control);
+              }),
+              AllOf(StartsWith("arm.urdf: <ros2_control> has no joint 'j'"),
+                    HasSubstr("--offsets origin")));
 }
 
 TEST(PatchUrdfRos2Control, OffsetsAreReadBack) {
@@ -568,13 +564,11 @@ TEST(PatchUrdfError, NumbersToBeChangedThatCannotBeRead) {
     return patch_urdf(bad, "arm.urdf", robot, patches, OffsetStyle::rising);
   };
   EXPECT_NO_THROW((void)patch({{"j", 0.1}})) << "an origin that stays is not looked at";
-  try {
-    (void)patch({{"j", 0.0, pose({1, 0, 0}, {0, 0, 0})}});
-    FAIL() << "accepted";
-  } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), AllOf(StartsWith("arm.urdf:3: joint 'j'"), HasSubstr("${z}"),
-                                HasSubstr("run xacro on it first")));
-  }
+  EXPECT_THAT(test::thrown<InputError>([&] {
+                (void)patch({{"j", 0.0, pose({1, 0, 0}, {0, 0, 0})}});
+              }),
+              AllOf(StartsWith("arm.urdf:3: joint 'j'"), HasSubstr("${z}"),
+                    HasSubstr("run xacro on it first")));
 }
 
 /// A driver and two mimic joints, the second of which mimics the first.
@@ -626,13 +620,11 @@ TEST(PatchUrdfMimic, NumbersThatDoNotChangeKeepTheirText) {
 
 TEST(PatchUrdfMimic, AJointThatDoesNotMimicIsAnError) {
   const Robot robot = parse_urdf(kMimics, "hand.urdf");
-  try {
-    (void)patch_urdf(kMimics, "hand.urdf", robot, {{"j", 0.0, {}, 0.1, 0.0}}, OffsetStyle::rising);
-    FAIL() << "accepted";
-  } catch (const InputError& e) {
-    EXPECT_STREQ(e.what(),
-                 "hand.urdf:3: joint 'j' does not mimic another: it has no <mimic> to correct");
-  }
+  EXPECT_EQ(test::thrown<InputError>([&] {
+              (void)patch_urdf(kMimics, "hand.urdf", robot, {{"j", 0.0, {}, 0.1, 0.0}},
+                               OffsetStyle::rising);
+            }),
+            "hand.urdf:3: joint 'j' does not mimic another: it has no <mimic> to correct");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "kinecal/kinematics/chain.hpp"
 #include "support/data.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -203,12 +204,7 @@ TEST(ReadUrdf, GivesTheOutputHandlerBack) {
 
 TEST(ReadUrdfError, AFileThatIsMissingOrAFolder) {
   const auto message = [](const std::string& path) {
-    try {
-      (void)read_urdf(path);
-    } catch (const InputError& e) {
-      return std::string(e.what());
-    }
-    return std::string("accepted");
+    return test::thrown<InputError>([&] { (void)read_urdf(path); }, "accepted");
   };
   EXPECT_THAT(message("no/such/arm.urdf"),
               AllOf(StartsWith("no/such/arm.urdf: "), HasSubstr("No such file")));

@@ -9,6 +9,7 @@
 
 #include "kinecal/files/diagnostics.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -140,12 +141,8 @@ TEST_F(YamlFile, HasASizeAtMost) {
   std::ofstream(path) << "a: 1\n";
   EXPECT_EQ(read_yaml_text(path), "a: 1\n");
   std::filesystem::resize_file(path, kMostYamlBytes + 1);  // sparse
-  try {
-    (void)read_yaml_text(path);
-    FAIL() << "it was read";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.what(), path + ": has 134217729 bytes; at most 128 MiB can be read");
-  }
+  EXPECT_EQ(test::thrown<InputError>([&] { (void)read_yaml_text(path); }),
+            path + ": has 134217729 bytes; at most 128 MiB can be read");
   EXPECT_THROW((void)read_yaml_text((folder_ / "none.yaml").string()), InputError);
 }
 

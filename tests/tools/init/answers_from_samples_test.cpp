@@ -8,6 +8,7 @@
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "support/paths.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -115,12 +116,7 @@ TEST(AnswersFromSamples, AFeatureThatIsNotANumberIsPassedOver) {
 TEST(AnswersFromSamples, NameWhatTheyLeaveOpen) {
   const Robot fetch = shipped_robot("fetch");
   const auto why = [&](const std::vector<Sample>& samples) -> std::string {
-    try {
-      (void)answers_from_samples(fetch, samples, {});
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return test::thrown<InputError>([&] { (void)answers_from_samples(fetch, samples, {}); }, "");
   };
   EXPECT_THAT(why({}), HasSubstr("there are no samples"));
   EXPECT_THAT(why(moving(kFetchArm, {board_of("arm", "board")})), HasSubstr("no camera"));

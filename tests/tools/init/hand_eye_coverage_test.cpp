@@ -25,7 +25,7 @@ void cover_hand_eye(IntervalCoverage& coverage, bool on_hand, std::uint64_t seed
     sample.source = "view " + std::to_string(n);
     sample.poses[Names::kFlangeJoint] = on_hand ? board * camera_T_board.inverse() * mount.inverse()
                                                 : mount * camera_T_board * board.inverse();
-    Observation holder{Names::kObject, {}, {}}, eye{Names::kCamera, {}, test::board_camera()};
+    Observation holder{Names::kObject, {}, {}}, eye{Names::kCamera, {}, test::camera_info()};
     for (const Vector3<double>& corner : test::corners()) {
       const Vector3<double> p = camera_T_board * corner;
       const double u = 550 * p.x() / p.z() + 320 + kPixelNoise * chance.normal();

@@ -18,6 +18,7 @@
 #include "kinecal/tools/init/hand_eye_fit.hpp"
 #include "support/hand_eye_poses.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -96,18 +97,10 @@ TEST_F(HandEyeColumns, ATableWithoutNamesNeedsTheForm) {
   const std::string table = "0.5,0,0,0,3.1,0\n0.5,0.1,0,0,2,1\n";
   EXPECT_THROW((void)columns(table), InputError);
   EXPECT_EQ(samples(columns(table, "ur")).size(), 2u);
-  try {
-    (void)columns(table, "quaternion_xyzw");
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), HasSubstr("the form has 7 columns: x y z qx qy qz qw"));
-  }
-  try {
-    (void)columns(table, "url");
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), HasSubstr("did you mean 'ur'?"));
-  }
+  EXPECT_THAT(test::thrown<InputError>([&] { (void)columns(table, "quaternion_xyzw"); }),
+              HasSubstr("the form has 7 columns: x y z qx qy qz qw"));
+  EXPECT_THAT(test::thrown<InputError>([&] { (void)columns(table, "url"); }),
+              HasSubstr("did you mean 'ur'?"));
 }
 
 TEST_F(HandEyeColumns, AMatrixIsKnownByItsTwelveOrSixteenNumbers) {

@@ -19,6 +19,7 @@
 #include "support/every_robot.hpp"
 #include "support/paths.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -264,12 +265,7 @@ INSTANTIATE_TEST_SUITE_P(EveryRobot, InitialConfig, testing::ValuesIn(test::ever
 class InitialConfigMistakes : public testing::Test {
  protected:
   std::string message(InitAnswers answers) const {
-    try {
-      (void)initial_config(robot_, answers);
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return "";
+    return test::thrown<InputError>([&] { (void)initial_config(robot_, answers); }, "");
   }
   Robot robot_ = read_urdf(test::source_folder() + "/examples/robots/panda/panda.urdf");
   InitAnswers good_{InitTarget::world_checkerboard, false,      "panda_link0", "panda_hand",

@@ -8,6 +8,7 @@
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "support/paths.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -26,12 +27,7 @@ std::string columns_of(const std::string& table) {
 }
 
 std::string refusal_of(const std::string& table) {
-  try {
-    (void)columns_of(table);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::thrown<InputError>([&] { (void)columns_of(table); }, "");
 }
 
 constexpr const char* kSix = "0.1,0.2,0.3,0.4,0.5,0.6";

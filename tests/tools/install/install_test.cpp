@@ -8,6 +8,7 @@
 
 #include "kinecal/tools/install/launch_folder.ipp"
 #include "support/launch_scene.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -45,12 +46,7 @@ class Install : public test::InstallScene {
   void expect_refused(const testing::Matcher<std::string>& message,
                       const std::vector<std::string>& names = {}) {
     const auto before = robot();
-    try {
-      install(names);
-      ADD_FAILURE() << "not refused";
-    } catch (const std::runtime_error& error) {
-      EXPECT_THAT(error.what(), message);
-    }
+    EXPECT_THAT(test::thrown<std::runtime_error>([&] { install(names); }), message);
     EXPECT_EQ(robot(), before);
   }
 
@@ -158,12 +154,8 @@ TEST_F(Install, TheFolderMayBeThatOfTheResult) {
 }
 
 TEST_F(Install, RestoringNeedsABackup) {
-  try {
-    restore();
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("robot.launch: there is nothing to restore"));
-  }
+  EXPECT_THAT(test::thrown<InputError>([&] { restore(); }),
+              HasSubstr("robot.launch: there is nothing to restore"));
 }
 
 TEST_F(Install, TheNewestBackupIsTheGreatestNumberNotTheLastLetter) {
@@ -181,15 +173,11 @@ TEST_F(Install, RestoresNothingThatTheRobotCouldNotStartFrom) {
   fs::remove(folder_ / "robot/calibrated_2026_01_02_03_04_05.urdf");
   fs::remove(folder_ / "robot/rgb_camera_2026_01_02_03_04_05.yaml");
   const auto before = robot();
-  try {
-    restore();
-    ADD_FAILURE() << "not refused";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("robot.launch.backup_2: names files that no longer "
-                                              "exist: calibrated_2026_01_02_03_04_05.urdf, "
-                                              "rgb_camera_2026_01_02_03_04_05.yaml; "),
-                                    HasSubstr("--force")));
-  }
+  EXPECT_THAT(test::thrown<InputError>([&] { restore(); }),
+              AllOf(HasSubstr("robot.launch.backup_2: names files that no longer "
+                              "exist: calibrated_2026_01_02_03_04_05.urdf, "
+                              "rgb_camera_2026_01_02_03_04_05.yaml; "),
+                    HasSubstr("--force")));
   EXPECT_EQ(robot(), before);
   (void)restore_installed(folder_ / "robot", "robot.launch", true);
   EXPECT_EQ(date(), "2026-01-02 03:04:05");

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "support/thrown.hpp"
+
 namespace kinecal {
 namespace {
 
@@ -14,12 +16,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::string names_refusal(const std::vector<std::string>& given) {
-  try {
-    (void)launch_names(given);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "(not refused)";
+  return test::thrown<InputError>([&] { (void)launch_names(given); }, "(not refused)");
 }
 
 TEST(LaunchNames, AreFetchsButForTheGivenOnes) {

@@ -7,6 +7,7 @@
 
 #include "support/arm_scene.hpp"
 #include "support/launch_scene.hpp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -35,12 +36,7 @@ class ReadResult : public test::InstallScene {
   }
   [[nodiscard]] StoredResult result() const { return read_result((folder_ / "out").string()); }
   [[nodiscard]] std::string refusal() const {
-    try {
-      (void)result();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return test::thrown<InputError>([&] { (void)result(); }, "");
   }
 };
 

@@ -41,14 +41,6 @@ double smallest_side(const CornerGrid& grid) {
   return least;
 }
 
-double longest_side(const CornerGrid& grid) {
-  double most = 0.0;
-  for_each_side(grid, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b, std::size_t) {
-    most = std::max(most, (b - a).norm());
-  });
-  return most;
-}
-
 /// True if four squares meet at (column, row), which may be beyond the grid: opposite squares are
 /// alike, and one pair is darker by half of the board's contrast.
 [[nodiscard]] bool squares_meet(const GrayImage& image, const CornerGrid& grid, int column, int row,

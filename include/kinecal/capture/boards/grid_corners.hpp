@@ -22,9 +22,6 @@ struct CornerGrid {
 /// The shortest side of a square, pixels.
 [[nodiscard]] double smallest_side(const CornerGrid& grid);
 
-/// The longest side of a square, pixels.
-[[nodiscard]] double longest_side(const CornerGrid& grid);
-
 /// True if corners can be those of a flat board that a lens has bent, of up to 190 degrees: distances from
 /// corner to corner change smoothly along rows and columns; and squares are uniformly dark and bright in
 /// turn: nine of ten pairs of neighbours, and half of those in each row and column.

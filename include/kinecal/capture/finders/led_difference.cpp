@@ -24,7 +24,7 @@ struct LedLight {
   }
 };
 
-/// The pixels around a circle, in the image; none if its center is NaN.
+/// The pixels around a circle, in the image; an empty box if its center is NaN.
 PixelBox led_box(const PixelCircle& circle, int width, int height) {
   const auto pixel = [](double x, int last) {
     return std::isnan(x) ? last + 1 : static_cast<int>(std::clamp(std::floor(x), -1.0, last + 1.0));

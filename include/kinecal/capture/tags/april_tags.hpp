@@ -32,13 +32,13 @@ class TagReader {
   ///                                changed
   TagReader(const std::string& family, int border, int wrong_bits, double decimate);
 
-  /// The tags in an image; none if it is less than 32 pixels wide or high.
+  /// The tags in an image; empty if it is less than 32 pixels wide or high.
   [[nodiscard]] std::vector<SeenTag> read(const GrayImage& image) const;
 
   /// The tags in an image, searched at its full size, with corners as libapriltag finds them.
   [[nodiscard]] std::vector<SeenTag> read_roughly(const GrayImage& image) const;
 
-  /// The codes of the family; none if its tags have no black border, or without libapriltag.
+  /// The codes of the family; empty if its tags have no black border, or without libapriltag.
   [[nodiscard]] const TagCodes& codes() const { return codes_; }
 
   /// Number of cells along a tag's side, including the border.

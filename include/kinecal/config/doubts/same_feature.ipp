@@ -9,8 +9,8 @@
 
 namespace kinecal::detail {
 
-/// The feature of an observation with the same id or, without ids, the same place; nullptr if there
-/// is none.
+/// The feature of an observation with the same id or, without ids, the same place; nullptr if
+/// absent.
 [[nodiscard]] inline const Feature* same_feature(const Observation& in, const Feature& feature,
                                                  std::size_t place) {
   if (!feature.id) return place < in.features.size() ? &in.features[place] : nullptr;

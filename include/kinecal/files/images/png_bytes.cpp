@@ -31,18 +31,15 @@ inline void append_pixel(std::string& out, std::uint8_t gray) {
 inline void append_pixel(std::string& out, std::uint16_t gray) {
   append_big_endian(out, gray, 2);
 }
-inline void append_pixel(std::string& out, const Rgb& colour) {
-  for (const std::uint8_t part : {colour.red, colour.green, colour.blue}) append_pixel(out, part);
-}
 
 template <class P>
 [[nodiscard]] std::string png_of(const Image<P>& image) {
   if (image.empty()) throw std::invalid_argument("an image without pixels cannot be written");
-  constexpr char kBits = sizeof(P) == 2 ? 16 : 8, kKind = sizeof(P) == 3 ? 2 : 0, kNoFilter = 0;
+  constexpr char kBits = sizeof(P) == 2 ? 16 : 8, kGray = 0, kNoFilter = 0;
   std::string header, rows;
   append_big_endian(header, static_cast<std::uint32_t>(image.width), 4);
   append_big_endian(header, static_cast<std::uint32_t>(image.height), 4);
-  header += {kBits, kKind, 0, 0, 0};
+  header += {kBits, kGray, 0, 0, 0};
   for (int v = 0; v < image.height; ++v) {
     rows.push_back(kNoFilter);
     for (int u = 0; u < image.width; ++u) append_pixel(rows, image(u, v));
@@ -66,10 +63,6 @@ std::string png_bytes(const GrayImage& image) {
 }
 
 std::string png_bytes(const Image<std::uint16_t>& image) {
-  return png_of(image);
-}
-
-std::string png_bytes(const Image<Rgb>& image) {
   return png_of(image);
 }
 

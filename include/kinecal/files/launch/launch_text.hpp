@@ -60,8 +60,8 @@ class LaunchText {
 
   [[nodiscard]] const std::string& text() const;
 
-  /// The value of a setting's element, in any attribute; an error and an empty text if there are none or several such
-  /// elements.
+  /// The value of a setting's element, in any attribute; an error and an empty text unless there is exactly one such
+  /// element.
   [[nodiscard]] std::string value_of(const LaunchSetting& setting, Diagnostics& diagnostics) const;
 
   /// The files that the text names by their full paths.

@@ -34,7 +34,7 @@ inline constexpr std::string_view kFeatureId = "feature_id_";
   return static_cast<int>(value);
 }
 
-/// Names and values of the parameters; none if no feature has an id.
+/// Names and values of the parameters; empty if no feature has an id.
 [[nodiscard]] inline std::vector<std::pair<std::string, double>> feature_id_parameters(
     const std::vector<Feature>& features) {
   std::vector<std::pair<std::string, double>> parameters;

@@ -79,7 +79,7 @@ class ConfigMap {
 
   bool flag(const std::string& key, bool fallback);
 
-  /// The elements of a list; none if it is missing or empty.
+  /// The elements of a list; empty if it is missing.
   std::vector<ConfigEntry> list(const std::string& key);
 
   /// A map; nullopt if it is missing or empty.

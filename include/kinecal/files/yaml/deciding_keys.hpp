@@ -30,8 +30,7 @@ enum class KeyMeaning { other, distortion, size, spacing, unit };
 [[nodiscard]] std::string text_of(KeyMeaning meaning);
 
 /// "; did you mean 'size'?": the nearest known key, or else the nearest one of the same meaning;
-/// empty if absent.  A limit or the name of a model is not meant by
-/// what is none.
+/// empty if absent.  A key of another meaning is not proposed for a limit or the name of a model.
 template <class Names>
 [[nodiscard]] std::string meant_by_key(std::string_view key, const Names& known) {
   const std::string near = did_you_mean(key, known);

@@ -17,7 +17,7 @@ double arrow_times(const std::vector<double>& sorted, double pixel) {
   return step > most * 1.5 ? 0.5 * step : step;
 }
 
-void append_arrow(std::string& path, Place from, Place to) {
+void append_arrow(std::string& path, ChartPoint from, ChartPoint to) {
   constexpr double kMost = 50.0;  // of what does not fit
   double x = to[0] - from[0], y = to[1] - from[1];
   const double length = std::hypot(x, y);
@@ -25,7 +25,7 @@ void append_arrow(std::string& path, Place from, Place to) {
     x *= kMost / length;
     y *= kMost / length;
   }
-  const Place end = {from[0] + x, from[1] + y};
+  const ChartPoint end = {from[0] + x, from[1] + y};
   path += "M" + coordinate(from[0]) + " " + coordinate(from[1]) + "L" + coordinate(end[0]) + " " +
           coordinate(end[1]);
   if (length < 3.0) return;

@@ -13,14 +13,14 @@ namespace kinecal::detail {
 
 /// From image pixels to the chart, with the enlargement of arrows.
 struct ImageScale {
-  Place corner = {0.0, 0.0};  ///< of the image in the chart
-  Place low = {0.0, 0.0};     ///< of the image, pixels
-  Place high = {1.0, 1.0};    ///< its other corner
-  double pixel = 1.0;         ///< length of a pixel in the chart
-  double times = 1.0;         ///< enlargement of arrows
+  ChartPoint corner = {0.0, 0.0};  ///< of the image in the chart
+  ChartPoint low = {0.0, 0.0};     ///< of the image, pixels
+  ChartPoint high = {1.0, 1.0};    ///< its other corner
+  double pixel = 1.0;              ///< length of a pixel in the chart
+  double times = 1.0;              ///< enlargement of arrows
 
   /// The end of an arrow; clipped to the image, give or take a few pixels.
-  [[nodiscard]] Place end_of(const ReportedFeature& feature) const {
+  [[nodiscard]] ChartPoint end_of(const ReportedFeature& feature) const {
     const auto [x, y] = *feature.pixel;
     const auto within = [&](double v, std::size_t i) {
       const double room = 8.0 / pixel;
@@ -29,7 +29,7 @@ struct ImageScale {
     return at(within(x + times * feature.residual[0], 0),
               within(y + times * feature.residual[1], 1));
   }
-  [[nodiscard]] Place at(double x, double y) const {
+  [[nodiscard]] ChartPoint at(double x, double y) const {
     return {corner[0] + pixel * (x - low[0]), corner[1] + pixel * (y - low[1])};
   }
 };
@@ -40,6 +40,6 @@ struct ImageScale {
 [[nodiscard]] double arrow_times(const std::vector<double>& sorted, double pixel);
 
 /// Appends an arrow to a path; a very short one has no head.
-void append_arrow(std::string& path, Place from, Place to);
+void append_arrow(std::string& path, ChartPoint from, ChartPoint to);
 
 }  // namespace kinecal::detail

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <set>
 
 #include "kinecal/report/svg_text.hpp"
@@ -48,18 +47,19 @@ std::string name_with_unit(const char* name, const std::string& unit) {
   return slug.empty() ? name : name + ("-" + slug);
 }
 
-std::vector<std::string> block_slugs(const ReportData& data) {
+std::vector<Chart> charts_of_blocks(const ReportData& data, const DrawBlock& draw) {
   std::set<std::string> taken;
-  std::vector<std::string> slugs;
+  std::vector<Chart> charts;
   for (const ReportedBlock& block : data.blocks) {
     const std::string slug = slug_of(block.name);
     std::string unique = slug.empty() ? "block" : slug;
     for (int i = 2; !taken.insert(unique).second; ++i) {
       unique = fmt::format("{}-{}", slug.empty() ? "block" : slug, i);
     }
-    slugs.push_back(unique);
+    Chart chart = draw(block, unique);
+    if (!chart.svg.empty()) charts.push_back(std::move(chart));
   }
-  return slugs;
+  return charts;
 }
 
 const ReportedSample& sample_of(const ReportData& data, const ReportedFeature& feature) {

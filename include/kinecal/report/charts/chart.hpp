@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,8 +40,11 @@ inline constexpr std::size_t kMostMarks = 2000;
 /// "errors-mm"; only the name if there is no unit.
 [[nodiscard]] std::string name_with_unit(const char* name, const std::string& unit);
 
-/// A unique name of each block, for charts and files.
-[[nodiscard]] std::vector<std::string> block_slugs(const ReportData& data);
+/// Draws a chart of a block; one without an svg is left out.
+/// @param slug  unique name of the block, for charts and files
+using DrawBlock = std::function<Chart(const ReportedBlock& block, const std::string& slug)>;
+/// The charts of blocks, in their order.
+[[nodiscard]] std::vector<Chart> charts_of_blocks(const ReportData& data, const DrawBlock& draw);
 
 /// Number of a feature's sample, from 1, in the order of the files.
 [[nodiscard]] int sample_number(const ReportData& data, const ReportedFeature& feature);

@@ -32,7 +32,7 @@ namespace {
 /// @param first  number of the step's first iteration on the axis
 void draw_runs(Drawing& drawing, const StepResult& step, double first, const Axis& x,
                const Axis& y) {
-  std::vector<Place> places;
+  std::vector<ChartPoint> places;
   std::string dots;
   double before = std::numeric_limits<double>::infinity();
   const std::size_t every = 1 + step.costs.size() / kMostMarks;

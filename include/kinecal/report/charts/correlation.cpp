@@ -59,7 +59,7 @@ namespace {
 }
 
 void draw_cells(Drawing& drawing, const ReportData& data, const std::vector<std::size_t>& chosen,
-                Place corner, double cell) {
+                ChartPoint corner, double cell) {
   for (std::size_t row = 0; row < chosen.size(); ++row) {
     const double y = corner[1] + cell * static_cast<double>(row) + 0.5;
     for (std::size_t column = 0; column <= row; ++column) {

@@ -38,7 +38,7 @@ void draw_density(Drawing& drawing, const std::array<double, kDensityBins>& dens
                   const std::vector<double>& values, const Axis& x, double base, double height,
                   bool is_before) {
   if (values.empty()) return;
-  std::vector<Place> outline;
+  std::vector<ChartPoint> outline;
   constexpr double kNothing = 0.3;  // of a pixel
   for (int i = 0; i < kDensityBins; ++i) {
     const double at = x.from() + (x.to() - x.from()) * i / (kDensityBins - 1);

@@ -39,7 +39,7 @@ namespace {
                           [](const ScatterPoint& a, const ScatterPoint& b) { return a.x < b.x; });
   std::string text = fmt::format("Errors of {} features at depths from {} to {} m.",
                                  count_text(points.size()), figure(near->x), figure(far->x));
-  const std::vector<Place> medians = running_median(points);
+  const std::vector<ChartPoint> medians = running_median(points);
   if (!medians.empty()) {
     text += fmt::format(" The median is {} near and {} {} far.", figure(medians.front()[1]),
                         figure(medians.back()[1]), people_unit(unit));
@@ -82,13 +82,9 @@ namespace {
 }  // namespace detail
 
 std::vector<Chart> depth_charts(const ReportData& data) {
-  std::vector<Chart> charts;
-  const std::vector<std::string> slugs = detail::block_slugs(data);
-  for (std::size_t b = 0; b < data.blocks.size(); ++b) {
-    Chart chart = detail::depth_chart(data, data.blocks[b], slugs[b]);
-    if (!chart.svg.empty()) charts.push_back(std::move(chart));
-  }
-  return charts;
+  return detail::charts_of_blocks(data, [&](const ReportedBlock& block, const std::string& slug) {
+    return detail::depth_chart(data, block, slug);
+  });
 }
 
 }  // namespace kinecal

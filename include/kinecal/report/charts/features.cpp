@@ -60,7 +60,8 @@ void draw_box(Drawing& drawing, const FeatureBox& box, double at, double width, 
   const double low = y.at(quantile(box.sorted, 0.25)), high = y.at(quantile(box.sorted, 0.75));
   const double median = y.at(quantile(box.sorted, 0.5)), half = 0.5 * width;
   drawing.area(
-      std::vector<Place>{{at - half, low}, {at + half, low}, {at + half, high}, {at - half, high}},
+      std::vector<ChartPoint>{
+          {at - half, low}, {at + half, low}, {at + half, high}, {at - half, high}},
       "area after");
   drawing.path(
       fmt::format("M{} {}h{}", coordinate(at - half), coordinate(median), coordinate(width)),
@@ -141,17 +142,12 @@ void draw_strip(Drawing& drawing, const ReportData& data, const ReportedBlock& b
 }  // namespace detail
 
 std::vector<Chart> feature_charts(const ReportData& data) {
-  std::vector<Chart> charts;
-  const std::vector<std::string> slugs = detail::block_slugs(data);
-  for (std::size_t b = 0; b < data.blocks.size(); ++b) {
-    const ReportedBlock& block = data.blocks[b];
+  return detail::charts_of_blocks(data, [&](const ReportedBlock& block, const std::string& slug) {
     const std::vector<double> distances = detail::used_distances(data, block);
     std::size_t all = 0;
     const auto boxes = detail::feature_boxes(block, distances, all);
-    if (all < 2) continue;
-    charts.push_back(detail::feature_chart(data, block, slugs[b], distances, boxes, all));
-  }
-  return charts;
+    return all < 2 ? Chart() : detail::feature_chart(data, block, slug, distances, boxes, all);
+  });
 }
 
 }  // namespace kinecal

@@ -11,7 +11,7 @@ namespace kinecal::detail {
 
 /// Corners of an image, pixels.
 struct ImageFrame {
-  Place low = {0.0, 0.0}, high = {1.0, 1.0};
+  ChartPoint low = {0.0, 0.0}, high = {1.0, 1.0};
   bool is_known = false;  ///< else the range of the features
 };
 

@@ -136,14 +136,10 @@ void draw_arrow_key(Drawing& drawing, const ImageScale& scale, bool has_means) {
 }  // namespace detail
 
 std::vector<Chart> pixel_charts(const ReportData& data) {
-  std::vector<Chart> charts;
-  const std::vector<std::string> slugs = detail::block_slugs(data);
-  for (std::size_t b = 0; b < data.blocks.size(); ++b) {
-    const auto features = detail::features_in_image(data, data.blocks[b]);
-    if (features.empty()) continue;
-    charts.push_back(detail::pixel_chart(data, data.blocks[b], slugs[b], features));
-  }
-  return charts;
+  return detail::charts_of_blocks(data, [&](const ReportedBlock& block, const std::string& slug) {
+    const auto features = detail::features_in_image(data, block);
+    return features.empty() ? Chart() : detail::pixel_chart(data, block, slug, features);
+  });
 }
 
 }  // namespace kinecal

@@ -97,13 +97,10 @@ struct FloorPoint {
 }  // namespace detail
 
 std::vector<Chart> plane_charts(const ReportData& data) {
-  std::vector<Chart> charts;
-  const std::vector<std::string> slugs = detail::block_slugs(data);
-  for (std::size_t b = 0; b < data.blocks.size(); ++b) {
-    const auto points = detail::floor_points(data, data.blocks[b]);
-    if (!points.empty()) charts.push_back(detail::plane_chart(data.blocks[b], slugs[b], points));
-  }
-  return charts;
+  return detail::charts_of_blocks(data, [&](const ReportedBlock& block, const std::string& slug) {
+    const auto points = detail::floor_points(data, block);
+    return points.empty() ? Chart() : detail::plane_chart(block, slug, points);
+  });
 }
 
 }  // namespace kinecal

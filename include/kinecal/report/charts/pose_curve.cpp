@@ -49,7 +49,7 @@ namespace {
 /// A line with dots; values beyond the axis interrupt it.
 void draw_accuracies(Drawing& drawing, const std::vector<PoseAccuracy>& points, const Axis& x,
                      const Axis& y, const char* line, const char* dots) {
-  std::vector<Place> places;
+  std::vector<ChartPoint> places;
   for (const PoseAccuracy& point : points) {
     const double shown = 1e3 * point.position;
     const bool inside = shown >= y.low() && shown <= y.high();

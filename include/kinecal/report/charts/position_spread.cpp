@@ -20,7 +20,7 @@ namespace {
 void draw_spreads(Drawing& drawing, const std::vector<PositionSpread>& points,
                   double PositionSpread::*value, const Axis& x, const Axis& y, const char* line,
                   const char* dots) {
-  std::vector<Place> places;
+  std::vector<ChartPoint> places;
   for (const PositionSpread& point : points) {
     const double shown = 1e3 * point.*value;
     places.push_back({x.at(point.poses), std::isfinite(shown)

@@ -42,7 +42,7 @@ double draw_map(Drawing& drawing, const ProjectionMap& map, double top, const ch
   constexpr double kMargin = 12.0, kMostHeight = 300.0;
   const double width = map.high[0] - map.low[0], height = map.high[1] - map.low[1];
   const double scale = std::min((kChartWidth - 2.0 * kMargin) / width, kMostHeight / height);
-  const Place corner = {0.5 * (kChartWidth - scale * width), top + 8.0};
+  const ChartPoint corner = {0.5 * (kChartWidth - scale * width), top + 8.0};
   const double wide = scale * width / map.columns, high = scale * height / map.rows;
   drawing.text({corner[0], top}, name, "name");
   std::string dots;
@@ -50,7 +50,7 @@ double draw_map(Drawing& drawing, const ProjectionMap& map, double top, const ch
     const KnownPixel& cell = map.cells[i];
     const double pixels = size(cell);
     const auto column = static_cast<int>(i) % map.columns, row = static_cast<int>(i) / map.columns;
-    const Place at = {corner[0] + wide * column, corner[1] + high * row};
+    const ChartPoint at = {corner[0] + wide * column, corner[1] + high * row};
     if (std::isnan(pixels)) continue;
     drawing.rectangle(
         at, wide, high, fmt::format("scale{}", color_of(pixels) + 1).c_str(),

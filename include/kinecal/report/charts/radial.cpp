@@ -25,7 +25,8 @@ struct RadialPoints {
 [[nodiscard]] RadialPoints radial_points(const ReportData& data,
                                          const std::vector<const ReportedFeature*>& features,
                                          const ImageFrame& frame) {
-  const Place middle = {0.5 * (frame.low[0] + frame.high[0]), 0.5 * (frame.low[1] + frame.high[1])};
+  const ChartPoint middle = {0.5 * (frame.low[0] + frame.high[0]),
+                             0.5 * (frame.low[1] + frame.high[1])};
   RadialPoints points;
   for (const ReportedFeature* feature : features) {
     const double x = (*feature->pixel)[0] - middle[0], y = (*feature->pixel)[1] - middle[1];
@@ -67,7 +68,7 @@ std::size_t draw_part(Drawing& drawing, const std::vector<ScatterPoint>& points,
   draw_part(drawing, points.across, 220.0, 346.0, "across, px", true);
   chart.caption += chosen_text(shown, points.outwards.size(), "features");
   std::string description = "Parts of residuals over the distance from the middle of the image.";
-  const std::vector<Place> medians = running_median(points.outwards);
+  const std::vector<ChartPoint> medians = running_median(points.outwards);
   if (!medians.empty()) {
     description += fmt::format(" The radial median is {} px near the middle and {} px at the rim.",
                                figure(medians.front()[1], 2), figure(medians.back()[1], 2));
@@ -80,16 +81,12 @@ std::size_t draw_part(Drawing& drawing, const std::vector<ScatterPoint>& points,
 }  // namespace detail
 
 std::vector<Chart> radial_charts(const ReportData& data) {
-  std::vector<Chart> charts;
-  const std::vector<std::string> slugs = detail::block_slugs(data);
-  for (std::size_t b = 0; b < data.blocks.size(); ++b) {
-    const auto features = detail::features_in_image(data, data.blocks[b]);
-    const auto frame = detail::image_frame(data.blocks[b], features);
+  return detail::charts_of_blocks(data, [&](const ReportedBlock& block, const std::string& slug) {
+    const auto features = detail::features_in_image(data, block);
+    const auto frame = detail::image_frame(block, features);
     const auto points = detail::radial_points(data, features, frame);
-    if (points.outwards.empty()) continue;
-    charts.push_back(detail::radial_chart(points, data.blocks[b], slugs[b]));
-  }
-  return charts;
+    return points.outwards.empty() ? Chart() : detail::radial_chart(points, block, slug);
+  });
 }
 
 }  // namespace kinecal

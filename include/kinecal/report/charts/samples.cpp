@@ -61,7 +61,7 @@ struct SampleMarks {
                  : sample.bad          ? marks.bad
                  : distances[i] < dark ? marks.others
                                        : marks.worst;
-    const Place place = {x.at(number), y.at(distances[i])};
+    const ChartPoint place = {x.at(number), y.at(distances[i])};
     sample.left_out ? append_cross(dots[number], place) : append_dot(dots[number], place);
   }
   return marks;
@@ -87,11 +87,11 @@ void number_worst(Drawing& drawing, const SampleMarks& marks, const Axis& x, con
     return a.second.distance > b.second.distance;
   });
   order.resize(std::min<std::size_t>(order.size(), 3));
-  std::vector<Place> taken;
+  std::vector<ChartPoint> taken;
   for (const auto& [number, worst] : order) {
-    const Place place = {x.at(number), y.at(worst.distance)};
+    const ChartPoint place = {x.at(number), y.at(worst.distance)};
     constexpr double kWide = 40.0, kHigh = 13.0;
-    if (std::none_of(taken.begin(), taken.end(), [&](const Place& other) {
+    if (std::none_of(taken.begin(), taken.end(), [&](const ChartPoint& other) {
           return std::abs(other[0] - place[0]) < kWide && std::abs(other[1] - place[1]) < kHigh;
         })) {
       const bool at_right = place[0] > x.to() - kWide;
@@ -106,13 +106,13 @@ void number_worst(Drawing& drawing, const SampleMarks& marks, const Axis& x, con
 void draw_left_out(Drawing& drawing, const ReportData& data, const ReportedBlock& block,
                    const SampleMarks& marks, const Axis& x, const Axis& y, double top) {
   Dots crosses = marks.left_out;
-  std::map<int, std::pair<Place, std::string>> targets;
+  std::map<int, std::pair<ChartPoint, std::string>> targets;
   for (const ReportedSample& sample : data.samples) {
     const int number = sample.number;
     if (!sample.left_out || number <= 0 || targets.size() >= kMostMarks) continue;
     const auto worst = marks.worst_of.find(number);
     if (worst == marks.worst_of.end()) {
-      const Place place = {x.at(number), top + 6.5};
+      const ChartPoint place = {x.at(number), top + 6.5};
       targets[number] = {place, fmt::format("sample {}: left out", number)};
       append_cross(crosses[number], place);
     } else {
@@ -204,16 +204,11 @@ void draw_left_out(Drawing& drawing, const ReportData& data, const ReportedBlock
 }  // namespace detail
 
 std::vector<Chart> sample_charts(const ReportData& data) {
-  std::vector<Chart> charts;
-  const std::vector<std::string> slugs = detail::block_slugs(data);
-  for (std::size_t b = 0; b < data.blocks.size(); ++b) {
-    const auto& features = data.blocks[b].features;
-    if (std::any_of(features.begin(), features.end(),
-                    [](const ReportedFeature& f) { return std::isfinite(f.after); })) {
-      charts.push_back(detail::sample_chart(data, data.blocks[b], slugs[b]));
-    }
-  }
-  return charts;
+  return detail::charts_of_blocks(data, [&](const ReportedBlock& block, const std::string& slug) {
+    const bool any = std::any_of(block.features.begin(), block.features.end(),
+                                 [](const ReportedFeature& f) { return std::isfinite(f.after); });
+    return any ? detail::sample_chart(data, block, slug) : Chart();
+  });
 }
 
 }  // namespace kinecal

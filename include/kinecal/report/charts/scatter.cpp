@@ -8,7 +8,7 @@
 
 namespace kinecal::detail {
 
-std::vector<Place> running_median(std::vector<ScatterPoint> points) {
+std::vector<ChartPoint> running_median(std::vector<ScatterPoint> points) {
   constexpr std::size_t kLeast = 10, kInGroup = 8, kMostGroups = 20;
   std::erase_if(points,
                 [](const ScatterPoint& p) { return !std::isfinite(p.x) || !std::isfinite(p.y); });
@@ -16,7 +16,7 @@ std::vector<Place> running_median(std::vector<ScatterPoint> points) {
   std::stable_sort(points.begin(), points.end(),
                    [](const ScatterPoint& a, const ScatterPoint& b) { return a.x < b.x; });
   const std::size_t groups = std::clamp<std::size_t>(points.size() / kInGroup, 1, kMostGroups);
-  std::vector<Place> medians;
+  std::vector<ChartPoint> medians;
   for (std::size_t g = 0; g < groups; ++g) {
     std::vector<double> xs, ys;
     for (std::size_t i = g * points.size() / groups; i < (g + 1) * points.size() / groups; ++i) {
@@ -54,8 +54,8 @@ std::size_t draw_scatter(Drawing& drawing, const std::vector<ScatterPoint>& poin
   drawing.open_group(chosen.size() <= kFew ? "dots" : "dots small");
   for (const auto& [sample, path] : dots) drawing.path(path, "", sample);
   drawing.close_group();
-  std::vector<Place> medians = running_median(points);
-  for (Place& median : medians) median = {x.at(median[0]), y.at(median[1])};
+  std::vector<ChartPoint> medians = running_median(points);
+  for (ChartPoint& median : medians) median = {x.at(median[0]), y.at(median[1])};
   drawing.curve(medians, "median");
   return chosen.size();
 }

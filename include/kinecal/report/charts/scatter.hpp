@@ -19,7 +19,7 @@ struct ScatterPoint {
 };
 
 /// Medians of x and y in equal groups of neighbours along x; empty for less than ten points.
-[[nodiscard]] std::vector<Place> running_median(std::vector<ScatterPoint> points);
+[[nodiscard]] std::vector<ChartPoint> running_median(std::vector<ScatterPoint> points);
 
 /// Zero is in the middle.  Values beyond 2.5 times the 95 % quantile are drawn at the edge.
 [[nodiscard]] Axis signed_axis(const std::vector<ScatterPoint>& points, double bottom, double top);

@@ -70,7 +70,7 @@ void draw_bar(Drawing& drawing, const ReportedSearchStep& step, double factor, d
   drawing.axis_x(area, x, "free parameters", true);
   drawing.axis_y(area, y,
                  search.unit == "1" ? "error, times the noise" : axis_name("error", search.unit));
-  std::vector<Place> fitted, held_out;
+  std::vector<ChartPoint> fitted, held_out;
   const ReportedSearchStep* chosen = nullptr;
   for (const ReportedSearchStep& step : search.steps) {
     const double at = x.at(step.parameters);
@@ -96,7 +96,7 @@ void draw_bar(Drawing& drawing, const ReportedSearchStep& step, double factor, d
     legend.push_back({Swatch::dot, "faint", "held out, not freed"});
   }
   if (chosen != nullptr) {
-    const Place place{x.at(chosen->parameters), y.at(factor * chosen->held_out)};
+    const ChartPoint place{x.at(chosen->parameters), y.at(factor * chosen->held_out)};
     drawing.line({place[0], area.top}, {place[0], place[1] - 9.0}, "zero");
     drawing.circle(place, 9.0, "ring after");
     const bool is_right = place[0] > 0.5 * (area.left + area.right);

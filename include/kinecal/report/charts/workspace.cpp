@@ -68,7 +68,7 @@ struct KnownSpace {
 /// The place of the robot's base: a cross with its name, legible on cells.
 void draw_base(Drawing& drawing, const MapAxes& map) {
   constexpr double kArm = 8.0;
-  const Place base = {map.x.at(0.0), map.y.at(0.0)};
+  const ChartPoint base = {map.x.at(0.0), map.y.at(0.0)};
   drawing.line({base[0] - kArm, base[1]}, {base[0] + kArm, base[1]}, "zero");
   drawing.line({base[0], base[1] - kArm}, {base[0], base[1] + kArm}, "zero");
   drawing.circle(base, 3.0, "ring");

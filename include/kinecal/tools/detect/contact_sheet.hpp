@@ -29,15 +29,17 @@ inline constexpr std::size_t kViewsOfSheet = 24;
                                   const std::string& name, const std::string& refusal,
                                   std::vector<GridLine> grid = {});
 
-/// PNGs of all views, kViewsOfSheet each.  Features are green crosses; thin blue lines are the grid that was fitted to
-/// them, so that a wrong corner lies beside its lines; corners that were dropped are magenta.  An orange square
-/// is around the first corner, and an arrow leads to the next.  Without a grid, dotted lines join neighbours in the
-/// order of their ids.  Below are the number of the view, its name and the RMS distance of corners and grid.  A view
-/// without features has a red frame and the reason below.
-/// @throws std::invalid_argument  if there are no views
+/// HTML pages of all views, kViewsOfSheet each, without scripts and other files.  Features are green crosses; thin
+/// blue lines are the grid that was fitted to them, so that a wrong corner lies beside its lines; corners that were
+/// dropped are magenta.  An orange square is around the first corner, and an arrow leads to the next.  Without a grid,
+/// dotted lines join neighbours in the order of their ids.  Below are the number of the view, its name and the RMS
+/// distance of corners and grid.  A view without features has a red frame and the reason below.  Marks far outside an
+/// image are left out.
+/// @throws std::invalid_argument  if there are no views, or an image is empty
 [[nodiscard]] std::vector<std::string> contact_sheets(const std::vector<Thumbnail>& thumbnails);
 
-/// The name of a sheet's file: that of the first; "sheet-2.png" of the second of "sheet.png".
+/// The name of a sheet's file: that of the first; "sheet-2.html" of the second of "sheet.html".  "sheet.png", as sheets
+/// were once written, is "sheet.html".
 /// @param number  from 0
 [[nodiscard]] std::string sheet_name(const std::string& first, std::size_t number);
 

@@ -29,7 +29,7 @@ struct LookOptions {
 /// What was found in a photograph, or in all views of a standstill.
 struct Look {
   std::string source;           ///< "images/0001.png", "drive.bag at 12.300 s"
-  std::vector<Sample> samples;  ///< none if nothing was found
+  std::vector<Sample> samples;  ///< empty if nothing was found
   std::size_t features = 0;
   std::vector<std::string>
       refused;  ///< views that were not looked at, and finders, with their reasons

@@ -305,7 +305,7 @@ namespace {
 
 // Intervals of a recording that give a view each while the robot moves.
 
-/// The view of a camera nearest to the middle of an interval; none if it has none there.
+/// The view of a camera nearest to the middle of an interval; empty if the interval has no view.
 /// @param views  sorted
 [[nodiscard]] std::vector<ViewStamp> middle_view(const std::vector<ViewStamp>& views,
                                                  const Standstill& time) {
@@ -494,7 +494,7 @@ class StandstillReader {
       for (const auto& camera : standstills_[s].views) {
         for (const auto& view : camera) {
           for (RawView::Part& part : view->parts) {
-            wanted_[part.topic].emplace(part.index, Place{s, &part});
+            wanted_[part.topic].emplace(part.index, WantedPart{s, &part});
             ++missing_[s];
           }
         }
@@ -526,7 +526,7 @@ class StandstillReader {
   }
 
  private:
-  struct Place {
+  struct WantedPart {
     std::size_t standstill;
     RawView::Part* part;
   };
@@ -543,8 +543,8 @@ class StandstillReader {
   const std::function<void(RecordedStandstill)>& handle_;
   std::vector<std::size_t> missing_;  ///< messages of each standstill
   std::set<std::size_t> given_;
-  std::map<std::string, std::multimap<std::size_t, Place>> wanted_;  ///< by topic and index
-  std::map<std::string, std::size_t> count_;                         ///< messages so far
+  std::map<std::string, std::multimap<std::size_t, WantedPart>> wanted_;  ///< by topic and index
+  std::map<std::string, std::size_t> count_;                              ///< messages so far
   MessageForms forms_;
 };
 

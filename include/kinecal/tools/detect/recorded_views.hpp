@@ -6,8 +6,8 @@
 // standstills, for any length of recording.
 //
 // While the robot moves, each interval gives the image nearest to its middle, with the positions and
-// velocities of the joints at its stamp: samples for the lag of a camera behind the joints.  Of an
-// interval in which nothing has moved since the last view, there is none.
+// velocities of the joints at its stamp: samples for the lag of a camera behind the joints.  An
+// interval in which nothing has moved since the last view gives no image.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

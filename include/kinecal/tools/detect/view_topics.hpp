@@ -38,7 +38,7 @@ struct ViewWishes {
   bool has_camera = false;  ///< the user gave the camera's settings: no topic is needed
 };
 
-/// The topics of each finder; empty, with an error, if there are none.
+/// The topics of each finder; empty, with an error, if a finder has no topic.
 /// @param diagnostics  receives errors, and notes about unnamed topics that were chosen
 [[nodiscard]] std::vector<ViewTopics> choose_topics(const std::vector<RecordedTopic>& recorded,
                                                     const std::vector<CaptureFinder>& finders,

@@ -249,6 +249,17 @@ void add_board(InitPlan& plan, const std::string& name, const std::string& link)
 // position of a reflector that of the last.  With both free, the samples would only determine their
 // sum.  So the offset is left out, and the configuration gives the reason: determined_offsets.hpp.
 
+/// Frees the camera and its mount, and compares what it sees.
+/// @param determined  the samples determine the whole frame of the mount; if not, a block keeps it small
+/// @param why         the frame is not determined
+void add_mounted_camera(InitPlan& plan, const InitAnswers& answers, const std::string& mount,
+                        bool determined, const std::string& why) {
+  free_frame(plan, mount, "How the camera is mounted.");
+  free_camera(plan, answers, false);
+  add_hand_eye(plan, answers);
+  if (!determined) keep_near_zero(plan, mount, why);
+}
+
 /// LEDs or a board on the gripper, seen by a camera that does not move with it.
 [[nodiscard]] InitPlan plan_hand_eye(const Robot& robot, const InitAnswers& answers) {
   InitPlan plan;
@@ -279,14 +290,9 @@ void add_board(InitPlan& plan, const std::string& name, const std::string& link)
   if (!head.empty()) {
     free_frame(plan, head_frame, "How the part that carries the camera is mounted on the robot.");
   }
-  free_frame(plan, mount, "How the camera is mounted.");
-  free_camera(plan, answers, false);
-  add_hand_eye(plan, answers);
-  if (!determined) {
-    keep_near_zero(plan, mount,
-                   "The joints cannot show all of the camera's frame beside the others: this block "
-                   "keeps its correction small.");
-  }
+  add_mounted_camera(plan, answers, mount, determined,
+                     "The joints cannot show all of the camera's frame beside the others: this "
+                     "block keeps its correction small.");
   return plan;
 }
 
@@ -306,15 +312,10 @@ void add_board(InitPlan& plan, const std::string& name, const std::string& link)
   const std::string mount = require_mount(robot, answers, {answers.base}).name;
   add_board(plan, answers.target_frame, answers.base);
   const bool determined = free_offsets(plan, robot, seen_by_camera(answers, answers.base), {mount});
-  free_frame(plan, mount, "How the camera is mounted.");
-  free_camera(plan, answers, false);
-  add_hand_eye(plan, answers);
-  if (!determined) {
-    keep_near_zero(plan, mount,
-                   "The camera does not turn about two axes, so samples cannot distinguish all of "
-                   "its frame from the board's: this block keeps the correction of the camera's "
-                   "frame small.");
-  }
+  add_mounted_camera(plan, answers, mount, determined,
+                     "The camera does not turn about two axes, so samples cannot distinguish all "
+                     "of its frame from the board's: this block keeps the correction of the "
+                     "camera's frame small.");
   return plan;
 }
 

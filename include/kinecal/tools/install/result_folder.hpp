@@ -34,7 +34,7 @@ struct ResultFolder {
   std::string date;                          ///< Y_m_d_H_M_S
   OutputFile urdf;                           ///< the calibrated URDF
   OutputFile values;                         ///< the file of the parameters
-  OutputFile report;                         ///< report.json; without a name if there is none
+  OutputFile report;                         ///< report.json; without a name if absent
   std::vector<ResultCamera> cameras;         ///< the calibrated cameras
   std::map<std::string, double> parameters;  ///< name and value: radians, metres or relative
   std::optional<bool> converged;             ///< nullopt if there is no report

@@ -6,12 +6,12 @@
 #include <cstddef>
 #include <optional>
 #include <random>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "kinecal/files/bags/codec/block_unpacker.ipp"
 #include "kinecal/files/bags/codec/unpack.ipp"
+#include "support/thrown.hpp"
 
 namespace kinecal {
 namespace {
@@ -41,12 +41,7 @@ std::vector<std::byte> some_bytes(std::size_t count) {
 /// What unpack() says is wrong; empty if nothing is.
 std::string mistake(const std::vector<std::byte>& packed, Compression compression,
                     std::optional<std::uint64_t> size, std::vector<std::byte>& out) {
-  try {
-    unpack(packed, compression, size, out);
-  } catch (const BytesError& e) {
-    return e.what();
-  }
-  return "";
+  return test::thrown<BytesError>([&] { unpack(packed, compression, size, out); }, "");
 }
 
 TEST(Compression, WhatIsPackedUnpacksToTheSame) {
