@@ -259,7 +259,7 @@ void report_faults(const ModelConfig& camera, const std::vector<TriedLens>& trie
   }
   const auto without_focal = std::count_if(tried.begin(), tried.end(),
                                            [](const TriedLens& lens) { return !lens.has_focal; });
-  const bool is_flat = 2 * without_focal >= std::ssize(tried);  // one or two do so by chance
+  const bool is_flat = 4 * without_focal >= std::ssize(tried);  // one or two do so by chance
   const bool is_same = std::all_of(tried.begin(), tried.end(), [&](const TriedLens& lens) {
     return lens.fault == tried.front().fault;
   });
