@@ -345,9 +345,9 @@ struct CornerColumns {
 // What three angles are: names and values tell little, poses of something that the camera sees tell all.
 
 /// A pose of each row; nullopt where numbers are missing or wrong.
-[[nodiscard]] std::vector<std::optional<Pose<double>>> poses_of(const HandEyeTable& table,
-                                                                const PoseColumns& columns,
-                                                                bool inverse) {
+[[nodiscard]] std::vector<std::optional<Pose<double>>> poses_by_row(const HandEyeTable& table,
+                                                                    const PoseColumns& columns,
+                                                                    bool inverse) {
   PoseForm form = form_of(table, columns);
   form.inverse = inverse;
   std::vector<std::optional<Pose<double>>> poses;
@@ -405,7 +405,7 @@ struct FormFit {
   for (const std::string& form : possible_forms(flange)) {
     PoseColumns columns = flange;
     columns.form = form;
-    const auto poses = poses_of(table, columns, tables.inverse);
+    const auto poses = poses_by_row(table, columns, tables.inverse);
     std::vector<Sample> samples;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double squares = 0.0;
@@ -548,7 +548,7 @@ void choose_marker_form(const HandEyeTable& table, const HandEyeTables& tables,
   for (const std::string& form : forms) {
     PoseColumns columns = marker;
     columns.form = form;
-    const auto fits = fits_of(table, flange, tables, poses_of(table, columns, false));
+    const auto fits = fits_of(table, flange, tables, poses_by_row(table, columns, false));
     if (fits.empty()) continue;
     best.push_back(fits.front());
     best.back().form = form;
@@ -690,7 +690,7 @@ std::string hand_eye_columns(const HandEyeTables& tables, const std::string& out
   if (tables.has_marker) {
     PoseColumns object = pose_columns(poses, "", of.second);
     choose_marker_form(poses, tables, columns, object);
-    choose(poses_of(poses, object, false));
+    choose(poses_by_row(poses, object, false));
     observations = fmt::format(
         "\nobservations:\n - sensor: {}  # what holds the marker\n   frame: {}\n   form: "
         "quaternion_xyzw\n"
