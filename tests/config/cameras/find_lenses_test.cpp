@@ -12,12 +12,12 @@
 #include <numbers>
 #include <regex>
 
+#include "kinecal/config/cameras/initial_cameras.hpp"
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/report_data.hpp"
-#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/sensors/lens_camera.hpp"
-#include "kinecal/config/cameras/initial_cameras.hpp"
+#include "kinecal/sensors/lenses/lens.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
 #include "support/cameras_alone.hpp"
 #include "support/repetitions.hpp"

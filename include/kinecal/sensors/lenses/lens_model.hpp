@@ -115,6 +115,14 @@ struct LensNear {
   }
 };
 
+/// The vector with length one.
+template <class S>
+[[nodiscard]] Vector3<S> unit(const Vector3<S>& v) {
+  using std::sqrt;
+  const S length = sqrt(S(v.x() * v.x() + v.y() * v.y() + v.z() * v.z()));
+  return {v.x() / length, v.y() / length, v.z() / length};
+}
+
 /// (3 x 2) unit vectors across a unit vector, which does not point straight backwards.
 template <class Q>
 [[nodiscard]] Eigen::Matrix<Q, 3, 2> across(const Vector3<Q>& u) {
@@ -127,21 +135,18 @@ template <class Q>
 /// The unit vector that a lens images at a place, by Newton's method with steps that are halved where they fail.
 template <LensModel L, class Q, std::size_t N>
 [[nodiscard]] Vector3<Q> direction_at(const Eigen::Matrix<Q, 2, 1>& at, const std::array<Q, N>& d) {
+  using std::abs, std::cos, std::sin, std::sqrt;
   const auto miss = [&](const Vector3<Q>& u) {  // no number: infinitely far
     const Eigen::Matrix<Q, 2, 1> seen = L::image(u, d);
     const Q far = abs(Q(seen.x() - at.x())) + abs(Q(seen.y() - at.y()));
     return Q(select(far < Q(HUGE_VAL), far, Q(HUGE_VAL)));
   };
-  const auto unit = [](const Vector3<Q>& v) {
-    const Q length = sqrt(Q(v.x() * v.x() + v.y() * v.y() + v.z() * v.z()));
-    return Vector3<Q>(v.x() / length, v.y() / length, v.z() / length);
-  };
   // It starts as a pinhole, or as an equidistant lens where that is nearer.
   const Q angle = sqrt(Q(at.x() * at.x() + at.y() * at.y()));
   const auto near_axis = angle < Q(1e-6);
   const Q scale = select(near_axis, Q(1.0), Q(sin(angle) / select(near_axis, Q(1.0), angle)));
-  const Vector3<Q> equidistant = unit({scale * at.x(), scale * at.y(), Q(cos(angle))});
-  Vector3<Q> u = unit({at.x(), at.y(), Q(1.0)});
+  const Vector3<Q> equidistant = unit<Q>({scale * at.x(), scale * at.y(), Q(cos(angle))});
+  Vector3<Q> u = unit<Q>({at.x(), at.y(), Q(1.0)});
   Q left = miss(u), step(1.0);
   const auto take = [&](const Vector3<Q>& other) {  // where it is nearer
     const Q of_other = miss(other);
@@ -177,12 +182,15 @@ template <LensModel L, class S, class C, std::size_t N>
     using Q = ValueOf<S>;
     const Vector3<Q> known =
         direction_at<L>(Eigen::Matrix<Q, 2, 1>(value_of(at.x()), value_of(at.y())), values_of(d));
-    const Eigen::Matrix<S, 3, 2> axes = across(known).template cast<S>();
-    Vector3<S> direction = known.template cast<S>();
-    const auto move = LensNear<L, S>(direction, axes, d).move_to(at);
+    const Eigen::Matrix<S, 3, 2> fixed = across(known).template cast<S>();
+    const Vector3<S> near = known.template cast<S>();
+    const auto move = LensNear<L, S>(near, fixed, d).move_to(at);
+    Vector3<S> direction;
     for (int i = 0; i < 3; ++i) {
-      direction(i) = direction(i) + axes(i, 0) * move.x() + axes(i, 1) * move.y();
+      direction(i) = near(i) + fixed(i, 0) * move.x() + fixed(i, 1) * move.y();
     }
+    direction = unit(direction);
+    const Eigen::Matrix<S, 3, 2> axes = across(direction);
     const Eigen::Matrix<S, 2, 2> moves = LensNear<L, S>(direction, axes, d).inverse;
     Sight<S> sight{direction, {}, {}};
     for (int i = 0; i < 3; ++i) {

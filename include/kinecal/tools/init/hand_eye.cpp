@@ -19,12 +19,12 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/config/cameras/camera_start.hpp"
 #include "kinecal/files/poses/hand_eye_samples.hpp"
 #include "kinecal/files/poses/pose_numbers.hpp"
 #include "kinecal/files/poses/pose_table.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/text/nearest_name.hpp"
-#include "kinecal/config/cameras/camera_start.hpp"
 #include "kinecal/tools/init/hand_eye_fit.hpp"
 #include "kinecal/tools/init/table_columns.ipp"
 
