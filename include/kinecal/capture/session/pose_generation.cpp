@@ -114,6 +114,21 @@ class ViewSearch {
     return "";
   }
 
+  /// Height of the lowest link that no joint of the goal moves, at most 0, metres.
+  [[nodiscard]] double lowest_of_held() const {
+    std::vector<double> elsewhere = middle_;
+    for (const std::size_t i : chosen_) elsewhere[i] += 0.1;  // radians or metres
+    const std::vector<Pose<double>> here = body_.poses(middle_), there = body_.poses(elsewhere);
+    constexpr double kMoved = 1e-9, kFlat = 0.01;  // metres; wheels may be a little lower
+    double lowest = -kFlat;
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      const bool moves = (here[i].translation - there[i].translation).norm() > kMoved ||
+                         (here[i].rotation - there[i].rotation).norm() > kMoved;
+      if (!moves) lowest = std::min(lowest, here[i].translation.z());
+    }
+    return lowest < -kFlat ? lowest : 0.0;
+  }
+
   /// The joints that move.
   [[nodiscard]] JointTarget target(const std::vector<double>& q) const {
     JointTarget target;
@@ -272,6 +287,10 @@ using Places = std::vector<std::vector<double>>;
 }
 
 }  // namespace detail
+
+double floor_height(const Robot& robot, const ViewGoal& goal) {
+  return detail::ViewSearch(robot, goal).lowest_of_held();
+}
 
 std::vector<JointTarget> poses_with_view_of(const Robot& robot, const ViewGoal& goal, int count,
                                             std::uint64_t seed) {
