@@ -230,6 +230,16 @@ TEST(JointTracks, TwoNodesThatPublishOneJointAreAnError) {
   EXPECT_THAT(alone.standstills(), SizeIs(2));
 }
 
+TEST(JointTracks, ARestlessJointMayJump) {
+  JointTracks tracks({"scanner"});
+  for (int i = 0; i <= 60; ++i) {  // turns by half a turn from reading to reading
+    tracks.add("joint_states",
+               {kStart + i * milliseconds(50), {"arm", "scanner"}, {0.4, 1.5 * (i % 2)}});
+  }
+  EXPECT_THAT(chosen(tracks).errors, IsEmpty());
+  EXPECT_THAT(tracks.standstills({"scanner"}), SizeIs(1));
+}
+
 TEST(JointTracks, TwoNodesWithDifferentListsOfJointsAreAnError) {
   for (const double of_second : {0.0, 0.8}) {  // the same as the driver, at first
     JointTracks tracks;

@@ -30,9 +30,12 @@ bool is_impossible(double step, Stamp time) {
 namespace {
 
 /// The joint that goes away and back in the middle one of three messages.
+/// @param restless  joints that may
 [[nodiscard]] std::optional<JointJump> jump_at(const JointReading& before, const JointReading& at,
-                                               const JointReading& after) {
+                                               const JointReading& after,
+                                               const std::vector<bool>& restless) {
   for (std::size_t j = 0; j < at.positions.size(); ++j) {
+    if (restless[j]) continue;
     const double away = unwrapped_step(before.positions[j], at.positions[j]);
     const double back = unwrapped_step(at.positions[j], after.positions[j]);
     const double least = std::min(std::abs(away), std::abs(back));
@@ -48,7 +51,7 @@ namespace {
 void JointTrack::add(JointReading reading) {
   ++messages;
   if (last_) {
-    const auto found = taken_ ? jump_at(*taken_, *last_, reading) : std::nullopt;
+    const auto found = taken_ ? jump_at(*taken_, *last_, reading, restless) : std::nullopt;
     if (found) {
       ++jumps;
       if (!jump) jump = found;

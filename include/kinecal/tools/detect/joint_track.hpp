@@ -39,10 +39,11 @@ struct JointJump {
 /// Positions of the same joints over time, at most 100 per second; faster readings are averaged.
 /// Readings that jump to another place and back are left out.
 struct JointTrack {
-  std::string topic;               ///< of the messages
-  std::vector<std::string> names;  ///< of joints
-  std::vector<bool> used = {};     ///< true if a joint's positions are taken from here
-  std::vector<Stamp> stamps = {};  ///< of the positions
+  std::string topic;                ///< of the messages
+  std::vector<std::string> names;   ///< of joints
+  std::vector<bool> used = {};      ///< true if a joint's positions are taken from here
+  std::vector<bool> restless = {};  ///< true if a joint may do anything
+  std::vector<Stamp> stamps = {};   ///< of the positions
   std::vector<std::vector<double>> rows =
       {};                               ///< positions of each stamp, in the order of the names
   Stamp bin = {};                       ///< start of the last stamp's hundredth of a second

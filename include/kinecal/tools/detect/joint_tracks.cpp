@@ -65,10 +65,12 @@ void check_jumps(const JointTrack& track, const std::string& file, Diagnostics& 
                                        ", and jump from there: left out");
   }
   if (!track.jump) return;
+  constexpr double kNoise = 8.0;  // standard deviations: what is less are readings that scatter
+  const auto [joint, from, to] = *track.jump;
+  if (std::abs(to - from) < kNoise * track.noise[joint]) return;
   std::ostringstream text;
-  text << about << "joint '" << printable(track.names[track.jump->joint]) << "' jumps from "
-       << track.jump->from << " to " << track.jump->to << " and back; so in " << track.jumps
-       << " of " << counted(track.messages, "message");
+  text << about << "joint '" << printable(track.names[joint]) << "' jumps from " << from << " to "
+       << to << " and back; so in " << track.jumps << " of " << counted(track.messages, "message");
   constexpr double kRare = 0.02;  // share of the messages
   if (static_cast<double>(track.jumps) <= kRare * static_cast<double>(track.messages)) {
     diagnostics.warning({file, 0}, text.str() + ", which are left out");
@@ -171,7 +173,7 @@ inline void JointTracks::find_second_nodes(const std::string& file,
     detail::check_jumps(track, file, diagnostics);
     for (std::size_t j = 0; j < track.names.size(); ++j) {
       const auto [other, is_new] = known.try_emplace({track.topic, track.names[j]}, &track, j);
-      if (is_new || !track.used[j]) continue;
+      if (is_new || !track.used[j] || track.restless[j]) continue;
       const auto places = detail::apart(*other->second.first, other->second.second, track, j);
       if (!places) continue;
       std::ostringstream text;
@@ -212,6 +214,7 @@ void JointTracks::add(const std::string& topic, const MeasuredJoints& reading) {
     track->topic = topic;
     track->names = names;
     track->used.assign(names.size(), true);
+    for (const std::string& name : names) track->restless.push_back(restless_.contains(name));
   }
   track->add({reading.stamp, std::move(positions)});
 }

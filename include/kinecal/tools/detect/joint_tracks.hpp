@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kinecal/capture/session/settling.hpp"
@@ -26,6 +27,10 @@ struct JointsInMotion {
 /// The joints of a recording.
 class JointTracks {
  public:
+  /// No joints.
+  /// @param restless  joints that may do anything
+  explicit JointTracks(std::set<std::string> restless = {}) : restless_(std::move(restless)) {}
+
   /// Adds a message of joint states.  Ignores one without positions.
   /// @param topic  of the message
   void add(const std::string& topic, const MeasuredJoints& reading);
@@ -67,6 +72,7 @@ class JointTracks {
   [[nodiscard]] std::optional<Standstill> span() const;
 
  private:
+  std::set<std::string> restless_;
   [[nodiscard]] bool measures(const std::string& topic, const std::string& joint) const;
   void choose_topics(const std::vector<std::string>& topics, const std::string& file,
                      Diagnostics& diagnostics);

@@ -94,7 +94,7 @@ struct RecordedSurvey {
     bool camera_changes = false;
   };
   std::map<std::string, Topic> topics = {};  ///< by name
-  JointTracks joints = {};
+  JointTracks joints{};
   std::vector<std::int64_t> joints_ahead = {};  ///< as ViewStamp::ahead
 
   static bool wants(const BagTopic& topic) {
@@ -638,6 +638,7 @@ class StandstillReader {
 RecordedViews::RecordedViews(RecordingOptions options, const std::vector<CaptureFinder>& finders,
                              Diagnostics& diagnostics, const ProgressMeter& meter)
     : options_(std::move(options)), survey_(std::make_unique<detail::RecordedSurvey>()) {
+  survey_->joints = JointTracks(options_.restless);
   detail::MessageForms forms;
   const auto handle = [&](const BagMessage& message) { survey_->add(message, forms); };
   Diagnostics own;
