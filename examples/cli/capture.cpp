@@ -262,6 +262,7 @@ struct Session {
   std::vector<Thumbnail> thumbnails = {};  ///< of what finders looked at
   std::set<std::string> said = {};         ///< notes of finders
   std::vector<std::string> advice = {};    ///< what was printed last: see advise()
+  SettleOptions settling = {};             ///< when the robot is still and has arrived
 
   /// Prints, writes and follows what came of a pose.
   void take(CapturedPose captured) {
@@ -282,7 +283,7 @@ struct Session {
     samples.insert(samples.end(), captured.samples.begin(), captured.samples.end());
     write_recording(options.output, samples, urdf, existing_at(options.output));
     for (const Sample& sample : captured.samples) {
-      if (follower) follower->add(sample, poses_left(poses, samples));
+      if (follower) follower->add(sample, poses_left(poses, samples, settling));
     }
     advise();
   }
@@ -312,8 +313,12 @@ struct Session {
     if (samples.empty() || captured.samples.empty()) return false;
     const Sample& now = captured.samples.front();
     for (std::size_t i = 0; i < now.joint_names.size(); ++i) {
-      const std::optional<double> before = samples.back().position(now.joint_names[i]);
-      if (!before || std::abs(*before - now.joint_positions[i]) > kSamePosition) return false;
+      const std::string& name = now.joint_names[i];
+      const std::optional<double> before = samples.back().position(name);
+      if (!before || joint_distance(name, *before, now.joint_positions[i], settling.continuous) >
+                         kSamePosition) {
+        return false;
+      }
     }
     return true;
   }
@@ -346,6 +351,8 @@ struct Session {
     };
     SessionOptions session;
     session.velocity_factor = options.velocity;
+    session.settling = settling;
+    session.fault = [&](const MeasuredJoints& joints) { return like_degrees(joints, robot); };
     if (options.manual) session.hopeless = 0;  // a person reads why, and may try on
     std::string lost;
     try {
@@ -383,13 +390,14 @@ int capture(const CaptureOptions& options) {
   if (!diagnostics.errors.empty()) return kBadInput;
   Session session{options, read_urdf_text(options.urdf), {}, {}, earlier_samples(options), {}};
   session.robot = parse_urdf(session.urdf, options.urdf);
+  session.settling.continuous = continuous_joints(session.robot);
   const std::size_t before = session.samples.size();
   check_chains(options.config, config, session.robot);
   bool is_complete = false;
   if (!options.manual) {
     const std::vector<CapturePose> all = read_poses(options.poses, config, session.robot);
     check_robot(session.samples, all);
-    session.poses = poses_left(all, session.samples);
+    session.poses = poses_left(all, session.samples, session.settling);
     session.earlier = all.size() - session.poses.size();
     is_complete = session.poses.empty();
   }

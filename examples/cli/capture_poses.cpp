@@ -7,12 +7,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <set>
 #include <sstream>
 #include <utility>
 
 #include "commands.hpp"
 #include "input.hpp"
 #include "interruption.hpp"
+#include "kinecal/capture/session/session_faults.hpp"
 #include "kinecal/capture/session/settling.hpp"
 #include "kinecal/files/recordings/write_recording.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
@@ -56,11 +58,15 @@ void check_before(const std::vector<CapturePose>& poses, const CaptureConfig& co
 }
 
 /// Whether two poses capture the same at the same positions.
-bool is_same(const CapturePose& a, const CapturePose& b) {
-  const auto near = [](double p, double q) { return std::abs(p - q) <= kSamePosition; };
-  return a.joint_names == b.joint_names && a.features == b.features &&
-         std::equal(a.positions.begin(), a.positions.end(), b.positions.begin(), b.positions.end(),
-                    near);
+/// @param continuous  joints that turn without end
+bool is_same(const CapturePose& a, const CapturePose& b, const std::set<std::string>& continuous) {
+  if (a.joint_names != b.joint_names || a.features != b.features) return false;
+  for (std::size_t i = 0; i < a.positions.size(); ++i) {
+    const double away =
+        joint_distance(a.joint_names[i], a.positions[i], b.positions[i], continuous);
+    if (away > kSamePosition) return false;
+  }
+  return true;
 }
 
 /// Poses that a person shows, and the file that always has all of them.
@@ -84,7 +90,7 @@ class PoseRecorder {
   /// @throws PoseError  why not
   void record() {
     CapturePose pose = measured();
-    if (!poses_.empty() && is_same(poses_.back(), pose)) {
+    if (!poses_.empty() && is_same(poses_.back(), pose, continuous_joints(robot_))) {
       throw PoseError("the robot has not moved since the last pose");
     }
     poses_.push_back(std::move(pose));
@@ -127,6 +133,7 @@ class PoseRecorder {
     settling.time_limit = std::chrono::seconds(3);
     const MeasuredJoints joints = settle_joints(arm_, {}, now_, settling);
     now_ = joints.stamp;
+    if (const std::string why = like_degrees(joints, robot_); !why.empty()) throw PoseError(why);
     CapturePose pose{{}, {}, features_};
     for (const CaptureChain& chain : config_.chains) {
       for (const std::string& joint : chain.joints) {

@@ -26,6 +26,7 @@ class Recorder {
   Recorder(const std::string& path, Encoding encoding) : bag_(path, encoding) {}
 
   Stamp delay = std::chrono::milliseconds(30);  ///< from a message's moment to its recording
+  std::string frame = "optical";                ///< frame_id of what follows
   Stamp camera_ahead{};  ///< stamps of images against those of joints, for the same moment
 
   void joints(const std::string& topic, const MeasuredJoints& joints) {
@@ -76,7 +77,7 @@ class Recorder {
              MessageFields content) {
     content.fields.emplace_back(
         "header", detail::fields("stamp", detail::time_fields(moment + ahead), "frame_id",
-                                 std::string_view("optical")));
+                                 std::string_view(frame)));
     bag_.write({topic, type}, (moment + delay).count(), content);
   }
 

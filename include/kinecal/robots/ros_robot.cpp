@@ -22,6 +22,8 @@
 #include "kinecal/robots/action_definitions.ipp"
 #include "kinecal/robots/bridge_client.hpp"
 #include "kinecal/robots/ros_action.hpp"
+#include "kinecal/text/frame_name.hpp"
+#include "kinecal/text/printable.hpp"
 
 namespace kinecal {
 
@@ -212,7 +214,8 @@ class ViewStreams {
 
   static constexpr std::size_t kKept = 4;
   static constexpr std::chrono::milliseconds kTogether{40};  ///< stamps of one exposure
-  static constexpr std::chrono::seconds kSameClock{1};       ///< allowed difference of clocks
+  static constexpr std::chrono::seconds kLate{1};            ///< beyond any latency
+  static constexpr std::chrono::milliseconds kAhead{100};    ///< jitter of arrivals
 
   void subscribe(const std::string& topic, std::vector<std::string> types) {
     if (topic.empty()) return;
@@ -267,7 +270,15 @@ class ViewStreams {
     for (std::size_t i = 0; i < match.size(); ++i) {
       view.stamp = std::min(view.stamp, match[i]->stamp);
       const MessageFields message = match[i]->message.fields();
-      if (view.frame.empty()) view.frame = std::string(text_at(message, "header.frame_id"));
+      const std::string frame(text_at(message, "header.frame_id"));
+      if (view.frame.empty()) view.frame = frame;
+      if (!frame.empty() && !same_frame(frame, view.frame)) {
+        throw PoseError("topic '" + streams_[i].topic + "': its frame is '" + printable(frame) +
+                        "', that of topic '" + streams_.front().topic + "' is '" +
+                        printable(view.frame) +
+                        "': the depth is of another camera; publish depth that is registered to "
+                        "the image");
+      }
       try {
         add(streams_[i].topic, message, view);
       } catch (const std::exception& error) {
@@ -307,7 +318,7 @@ class ViewStreams {
   }
 
   [[nodiscard]] bool is_ahead(const Stamped& message) const {
-    return lead(message).value_or(ClockOffset{}) > kSameClock;
+    return lead(message).value_or(ClockOffset{}) > kAhead;
   }
 
   [[nodiscard]] std::string why_ahead(const Stamped& message) const {
@@ -328,9 +339,9 @@ class ViewStreams {
                       std::to_string(kTogether.count()) + " ms of it");
     }
     const auto ahead = lead(last);
-    if (std::chrono::steady_clock::now() - last.message.arrival > kSameClock) {
+    if (std::chrono::steady_clock::now() - last.message.arrival > kLate) {
       why += "; the stream has stopped";
-    } else if (ahead && *ahead < -kSameClock) {
+    } else if (ahead && *ahead < -kLate) {
       why += ", " + stamp_text(-*ahead) + " behind the joint states: it lags, or is of another " +
              "clock; synchronise the clocks (ntp, use_sim_time)";
     }

@@ -132,5 +132,41 @@ TEST(PoseGeneration, SaysWhatIsWrongIfThereIsNone) {
                std::invalid_argument);
 }
 
+/// A torso with a camera, an arm and a leg: the torso is the root, or stands on one.
+Robot legged(bool on_footprint) {
+  using enum JointType;
+  const JointLimits wide{-2.0, 2.0};
+  const auto turn = [&](const char* name, const char* parent, const char* child,
+                        const Vector3<double>& at, const Vector3<double>& axis) {
+    return Joint{name, revolute, parent, child, test::origin(at), axis, {}, wide};
+  };
+  Joint camera{"camera_joint", fixed, "torso", "camera", test::origin({0.1, 0.0, 0.4})};
+  camera.origin.rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;  // looks along x
+  std::vector<Joint> joints = {camera,
+                               turn("shoulder", "torso", "upper_arm", {0, 0.2, 0.3}, {0, 1, 0}),
+                               turn("elbow", "upper_arm", "forearm", {0.3, 0, 0}, {0, 1, 0}),
+                               turn("roll", "forearm", "wrist", {0.25, 0, 0}, {1, 0, 0}),
+                               turn("wrist", "wrist", "hand", {0.05, 0, 0}, {0, 0, 1}),
+                               turn("hip", "torso", "thigh", {0, 0, -0.1}, {0, 1, 0}),
+                               turn("knee", "thigh", "shin", {0, 0, -0.4}, {0, 1, 0}),
+                               {"sole_joint", fixed, "shin", "sole", test::origin({0, 0, -0.4})}};
+  if (on_footprint) joints.push_back({"up", fixed, "foot", "torso", test::origin({0, 0, 0.9})});
+  return Robot("legged", std::move(joints));
+}
+
+TEST(PoseGeneration, TheFloorIsBelowTheFeetOfARobotWhoseRootIsItsTorso) {
+  ViewGoal goal = board_in_hand();
+  goal.front.reset();
+  goal.points = {{0.05, 0.0, 0.0}};
+  goal.camera = "camera";
+  for (const bool on_footprint : {false, true}) {
+    const Robot robot = legged(on_footprint);
+    goal.base = on_footprint ? "foot" : "torso";
+    EXPECT_NEAR(floor_height(robot, goal), on_footprint ? 0.0 : -0.9, 1e-12);
+    goal.ground = floor_height(robot, goal) - 0.01;
+    EXPECT_EQ(poses_with_view_of(robot, goal, 6).size(), 6U);
+  }
+}
+
 }  // namespace
 }  // namespace kinecal

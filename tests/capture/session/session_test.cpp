@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -217,6 +218,71 @@ TEST(Session, LooksBeforeItMoves) {
   };
   EXPECT_THAT(hopeless(session, five_poses()), HasSubstr("camera's stamps are"));
   EXPECT_TRUE(session.captured.empty());
+}
+
+TEST(Session, EndsWithAFrozenCamera) {
+  ToySession session;
+  std::optional<View> frozen;
+  session.finders[0].next_view = [&](Stamp after) {
+    View view = session.camera.next_view(after);
+    if (session.captured.size() < 2) return view;
+    if (!frozen) frozen = view;
+    view.image = frozen->image;  // with stamps that advance
+    return view;
+  };
+  const auto run = [&] { session.run(five_poses()); };
+  EXPECT_THAT([&] { run(); },
+              testing::ThrowsMessage<ConnectionError>(AllOf(
+                  HasSubstr("square: its camera is frozen"), HasSubstr("joint 'pan' has moved"))));
+  EXPECT_EQ(session.captured.size(), 5u);
+  EXPECT_EQ(session.samples.size(), 3u);
+}
+
+TEST(Session, AnImageOfARobotThatDidNotMoveMayBeTheSame) {
+  ToySession session;
+  session.arm.noise = 0.0;
+  session.run({{{"pan", "tilt"}, {0.2, 0.1}, {}}, {{"pan", "tilt"}, {0.2, 0.1}, {}}});
+  EXPECT_EQ(session.samples.size(), 2u);
+}
+
+TEST(Session, EndsBeforeAMotionIfPositionsAreInDegrees) {
+  const Robot robot(
+      "r", {{.name = "pan",
+             .type = JointType::revolute,
+             .parent = "base",
+             .child = "head",
+             .limits = JointLimits{-1.5, 1.5}},
+            {.name = "roll", .type = JointType::continuous, .parent = "head", .child = "tool"}});
+  const auto said = [&](const std::string& joint, double q) {
+    return like_degrees({Stamp{}, {joint}, {q}}, robot);
+  };
+  EXPECT_THAT(said("pan", 28.6), AllOf(HasSubstr("joint 'pan' is at 28.6"), HasSubstr("degrees")));
+  EXPECT_THAT(said("pan", -6.0), HasSubstr("degrees"));
+  EXPECT_EQ(said("pan", 1.6), "");    // a little beyond its limits
+  EXPECT_EQ(said("roll", 25.0), "");  // four turns
+  EXPECT_EQ(said("other", 90.0), "");
+  ToySession session;
+  SessionOptions options;
+  options.fault = [](const MeasuredJoints&) { return std::string("degrees"); };
+  EXPECT_THAT(
+      [&] {
+        run_session(
+            session.arm, poses_of(five_poses()), session.finders,
+            [&](const CapturedPose& pose) { session.captured.push_back(pose); }, options);
+      },
+      testing::ThrowsMessage<HopelessError>(HasSubstr("degrees; the robot has not moved")));
+  EXPECT_TRUE(session.captured.empty());
+}
+
+TEST(Session, ResumesWhereAContinuousJointIsAWholeTurnAway) {
+  Sample sample;
+  sample.joint_names = {"pan"};
+  sample.joint_positions = {0.3 + 2.0 * std::acos(-1.0)};
+  const std::vector<CapturePose> poses = {{{"pan"}, {0.3}, {}}};
+  SettleOptions settling;
+  EXPECT_EQ(poses_left(poses, std::vector{sample}, settling).size(), 1u);
+  settling.continuous = {"pan"};
+  EXPECT_TRUE(poses_left(poses, std::vector{sample}, settling).empty());
 }
 
 }  // namespace

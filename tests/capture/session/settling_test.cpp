@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/thrown.hpp"
 #include "support/toy_robot.hpp"
 
@@ -99,6 +101,49 @@ TEST(Settling, SaysThatTheSizeOfTheImageChanges) {
   };
   EXPECT_THAT(test::thrown<PoseError>([&] { (void)settle_image(next, arm.now); }),
               HasSubstr("changes from 66 x 66 to 68 x 68"));
+}
+
+/// Whether a joint that is read every 20 ms counts as still.
+template <class Read>
+bool rests(Read&& read, const SettleOptions& options = {}) {
+  JointRest rest(options);
+  for (int i = 0; i < 40; ++i) rest.add({i * milliseconds(20), {"pan"}, {read(i)}});
+  return rest.still();
+}
+
+TEST(Settling, TwoNodesThatPublishAJointInTurnAreNoRest) {
+  EXPECT_TRUE(rests([](int) { return 0.8; }));
+  EXPECT_TRUE(rests([](int i) { return 0.8 + 0.004 * (i % 2); }));  // a count of an encoder
+  EXPECT_FALSE(rests([](int i) { return i % 2 == 0 ? 0.8 : 0.0; }));
+  EXPECT_FALSE(rests([](int i) { return i % 3 == 0 ? 0.8 : 0.0; }));
+  EXPECT_FALSE(rests([](int i) { return i % 16 == 0 ? 0.0 : 0.8; }));
+  JointRest rest(SettleOptions{});
+  for (int i = 0; i < 40; ++i) rest.add({i * milliseconds(20), {"pan"}, {i % 2 == 0 ? 0.8 : 0.0}});
+  EXPECT_THAT(rest.why_not_still(),
+              AllOf(HasSubstr("joint 'pan' jump between 0 and 0.8"), HasSubstr("two nodes")));
+}
+
+TEST(Settling, AContinuousJointArrivesAWholeTurnAway) {
+  const double turn = 2.0 * std::acos(-1.0);
+  SettleOptions options;
+  options.continuous = {"pan"};
+  for (const double turns : {-2.0, -1.0, 0.0, 1.0}) {
+    JointRest rest(options), revolute(SettleOptions{});
+    for (int i = 0; i < 20; ++i) {
+      rest.add({i * milliseconds(20), {"pan"}, {0.5 + turns * turn}});
+      revolute.add({i * milliseconds(20), {"pan"}, {0.5 + turns * turn}});
+    }
+    ASSERT_TRUE(rest.still());
+    const JointTarget goal{{"pan"}, {0.5}}, elsewhere{{"pan"}, {0.6}};
+    EXPECT_EQ(rest.not_arrived(goal), "");
+    EXPECT_NE(rest.not_arrived(elsewhere), "");
+    EXPECT_EQ(revolute.not_arrived(goal).empty(), turns == 0.0);
+  }
+}
+
+TEST(Settling, AJointThatIsReportedWrappedAtHalfATurnIsStill) {
+  const double pi = std::acos(-1.0);
+  EXPECT_TRUE(rests([&](int i) { return i % 2 == 0 ? pi - 2e-4 : -pi + 2e-4; }));
 }
 
 }  // namespace

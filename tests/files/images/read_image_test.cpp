@@ -33,6 +33,12 @@ GrayImage ramp() {
 }
 
 #ifdef KINECAL_HAVE_PNG
+TEST(ReadImage, WebPIsNamed) {
+  const std::string bytes = std::string("RIFF\x1a\0\0\0WEBPVP8L", 16) + std::string(20, 'x');
+  EXPECT_NE(error_of([&] { (void)decode_image(bytes, "a.webp"); }).find("a.webp: is WebP"),
+            std::string::npos);
+}
+
 TEST(ReadImage, APngReadsBackExactly) {
   const GrayImage image = decode_image(detail::png_bytes(ramp()), "a.png");
   EXPECT_EQ(image.width, 40);

@@ -185,5 +185,36 @@ TEST(ViewMessage, VideoIsNamed) {
   EXPECT_THAT(test::error_of(video), testing::HasSubstr("its images are video, 'h264'"));
 }
 
+TEST(ViewMessage, CloudsOfDoublesAreReadAsThoseOfFloats) {
+  const auto cloud_of = [](std::int64_t type, auto number, std::int64_t width) {
+    constexpr std::size_t kBytes = sizeof(number);
+    MessageValue::List xyz;
+    std::int64_t offset = 0;
+    for (const std::string_view name : {"x", "y", "z"}) {
+      xyz.emplace_back(fields("name", name, "offset", offset, "datatype", type));
+      offset += static_cast<std::int64_t>(kBytes);
+    }
+    std::string data;
+    for (int i = 0; i < 3 * width; ++i) {
+      const decltype(number) value = static_cast<decltype(number)>(0.25 * i);
+      data.append(reinterpret_cast<const char*>(&value), kBytes);
+    }
+    PointCloud points;
+    GrayImage none;
+    read_cloud(fields("height", std::int64_t{1}, "width", width, "fields", xyz, "is_bigendian",
+                      std::int64_t{0}, "point_step", offset, "row_step", offset * width, "data",
+                      as_bytes(data)),
+               points, none);
+    return points;
+  };
+  for (const PointCloud& points : {cloud_of(7, 0.0F, 2), cloud_of(8, 0.0, 2)}) {
+    ASSERT_EQ(points.width, 2);
+    EXPECT_EQ(points(0, 0), Eigen::Vector3f(0.0F, 0.25F, 0.5F));
+    EXPECT_EQ(points(1, 0), Eigen::Vector3f(0.75F, 1.0F, 1.25F));
+  }
+  EXPECT_EQ(cloud_of(7, 0.0F, 640 * 480).width, 640 * 480);  // a list, as drivers send it
+  EXPECT_THAT(test::error_of([&] { (void)cloud_of(5, 0, 2); }), HasSubstr("float32 or float64"));
+}
+
 }  // namespace
 }  // namespace kinecal::detail

@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
+#include <vector>
 
 namespace kinecal {
 namespace {
 
 using std::chrono::milliseconds;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -190,6 +193,154 @@ TEST(JointTracks, WithoutPositionsThereIsNothing) {
   few.add("joint_states", {kStart, {"arm"}, {1.0}});
   EXPECT_THAT(chosen(few).warnings,
               ElementsAre(HasSubstr("'arm' of topic 'joint_states' are left")));
+}
+
+/// Joint states of an arm of two joints: at (0.8, -0.6) until 1 s, then to (0.3, 0.4) within a second.
+std::vector<double> place(double time) {
+  const double way = one_move(time);
+  return {0.8 - 0.5 * way, -0.6 + way};
+}
+
+/// A recording of 20 readings a second, with those of a second node.
+/// @param zeros_after  a reading of zeros 10 ms after each n-th one; 0: none
+JointTracks with_second_node(int zeros_after, milliseconds period = milliseconds(50)) {
+  JointTracks tracks;
+  int count = 0;
+  for (Stamp t{}; t <= std::chrono::seconds(3); t += period) {
+    tracks.add("joint_states",
+               {kStart + t, {"pan", "tilt"}, place(std::chrono::duration<double>(t).count())});
+    if (zeros_after == 0 || ++count % zeros_after != 0) continue;
+    tracks.add("joint_states", {kStart + t + period / 5, {"tilt", "pan"}, {0.0, 0.0}});
+  }
+  return tracks;
+}
+
+TEST(JointTracks, TwoNodesThatPublishOneJointAreAnError) {
+  for (const int zeros_after : {1, 2, 3, 20}) {
+    for (const auto period : {milliseconds(50), milliseconds(5), milliseconds(1)}) {
+      JointTracks tracks = with_second_node(zeros_after, period);
+      EXPECT_THAT(chosen(tracks).errors,
+                  ElementsAre(AllOf(HasSubstr("topic 'joint_states': joint 'pan' jumps from"),
+                                    HasSubstr("and back"), HasSubstr("two nodes publish it"))))
+          << zeros_after << ", " << period.count();
+    }
+  }
+  JointTracks alone = with_second_node(0);
+  EXPECT_THAT(chosen(alone).errors, IsEmpty());
+  EXPECT_THAT(alone.standstills(), SizeIs(2));
+}
+
+TEST(JointTracks, ARestlessJointMayJump) {
+  JointTracks tracks({"scanner"});
+  for (int i = 0; i <= 60; ++i) {  // turns by half a turn from reading to reading
+    tracks.add("joint_states",
+               {kStart + i * milliseconds(50), {"arm", "scanner"}, {0.4, 1.5 * (i % 2)}});
+  }
+  EXPECT_THAT(chosen(tracks).errors, IsEmpty());
+  EXPECT_THAT(tracks.standstills({"scanner"}), SizeIs(1));
+}
+
+TEST(JointTracks, TwoNodesWithDifferentListsOfJointsAreAnError) {
+  for (const double of_second : {0.0, 0.8}) {  // the same as the driver, at first
+    JointTracks tracks;
+    for (int i = 0; i < 60; ++i) {
+      const Stamp t = i * milliseconds(50);
+      tracks.add("joint_states", {kStart + t, {"pan", "tilt"}, place(0.05 * i)});
+      tracks.add("joint_states",
+                 {kStart + t + milliseconds(20), {"pan", "finger"}, {of_second, 0.01}});
+    }
+    EXPECT_THAT(chosen(tracks).errors,
+                ElementsAre(AllOf(HasSubstr("joint 'pan' is in two lists of joints, at"),
+                                  HasSubstr("two nodes publish it"))));
+  }
+  JointTracks agree;
+  for (int i = 0; i < 60; ++i) {
+    const Stamp t = i * milliseconds(50);
+    agree.add("joint_states", {kStart + t, {"pan", "tilt"}, place(0.05 * i)});
+    agree.add(
+        "joint_states",
+        {kStart + t + milliseconds(20), {"pan", "finger"}, {place(0.05 * i + 0.02)[0], 0.01}});
+  }
+  EXPECT_THAT(chosen(agree).errors, IsEmpty());
+}
+
+TEST(JointTracks, ASingleFalseReadingIsLeftOutWithAWarning) {
+  JointTracks broken;
+  for (int i = 0; i <= 150; ++i) {
+    broken.add("joint_states", {kStart + i * milliseconds(20),
+                                {"pan", "tilt"},
+                                i == 25 ? std::vector{0.0, 0.0} : place(0.02 * i)});
+  }
+  const Diagnostics diagnostics = chosen(broken);
+  EXPECT_THAT(diagnostics.errors, IsEmpty());
+  EXPECT_THAT(diagnostics.warnings,
+              ElementsAre(HasSubstr("joint 'pan' jumps from 0.8 to 0 and back; so in 1 of 151 "
+                                    "messages, which are left out")));
+  const auto rests = broken.standstills();
+  ASSERT_THAT(rests, SizeIs(2));
+  EXPECT_NEAR(broken.positions(kStart + milliseconds(500), rests[0]).position("pan").value(), 0.8,
+              1e-12);
+}
+
+TEST(JointTracks, ZerosBeforeTheFirstRealReadingAreLeftOut) {
+  JointTracks tracks;
+  for (int i = 0; i <= 150; ++i) {
+    tracks.add("joint_states", {kStart + i * milliseconds(20),
+                                {"pan", "tilt"},
+                                i < 25 ? std::vector{0.0, 0.0} : place(0.02 * i)});
+  }
+  EXPECT_THAT(chosen(tracks).warnings,
+              testing::Contains(HasSubstr("are zero in the first 25 messages, and jump")));
+  const auto rests = tracks.standstills();
+  ASSERT_THAT(rests, SizeIs(2));
+  EXPECT_NEAR(seconds(rests[0].begin), 0.5, 0.02);
+  JointTracks simulated;  // jumps from pose to pose, the first of which is zero
+  for (int i = 0; i < 150; ++i) {
+    const double pan = 0.4 * (i / 50);
+    simulated.add("joint_states", {kStart + i * milliseconds(20), {"pan", "tilt"}, {pan, -pan}});
+  }
+  EXPECT_THAT(chosen(simulated).warnings, IsEmpty());
+  EXPECT_THAT(simulated.standstills(), SizeIs(3));
+}
+
+TEST(JointTracks, ReadingsThatFlickerByACountAreARest) {
+  for (const double count : {0.0042, 0.0015, 0.012}) {  // radians
+    for (int seed = 1; seed <= 20; ++seed) {
+      std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+      std::normal_distribution<double> noise(0.0, 0.36 * count);
+      std::uniform_real_distribution<double> anywhere(-1.0, 1.0);
+      const double from = anywhere(random), to = from + 0.7;
+      JointTracks tracks;
+      for (int i = 0; i <= 100; ++i) {  // 2 s, a move of 1 s, 2 s
+        const double true_q = from + (to - from) * std::clamp(0.05 * i - 2.0, 0.0, 1.0);
+        const double read = std::round((true_q + noise(random)) / count) * count;
+        tracks.add("joint_states", {kStart + i * milliseconds(50), {"arm"}, {read}});
+      }
+      EXPECT_THAT(chosen(tracks).errors, IsEmpty());
+      const auto rests = tracks.standstills();
+      ASSERT_THAT(rests, SizeIs(2)) << count << ", seed " << seed;
+      EXPECT_NEAR(seconds(rests[0].end), 2.0, 0.25);
+      EXPECT_NEAR(seconds(rests[1].begin), 3.0, 0.25);
+      // Twenty readings: a quarter of a count is five standard deviations of their mean.
+      EXPECT_NEAR(tracks.positions(kStart + milliseconds(1000), rests[0]).position("arm").value(),
+                  from, 0.4 * count);
+    }
+  }
+}
+
+TEST(JointTracks, AJointThatIsReportedWrappedAtHalfATurnStandsStill) {
+  JointTracks tracks;
+  for (int i = 0; i <= 60; ++i) {
+    const double pi = std::acos(-1.0), q = pi + 1e-3 * std::sin(7.0 * i);
+    tracks.add("joint_states",
+               {kStart + i * milliseconds(50), {"roll"}, {std::remainder(q, 2.0 * pi)}});
+  }
+  EXPECT_THAT(chosen(tracks).errors, IsEmpty());
+  const auto rests = tracks.standstills();
+  ASSERT_THAT(rests, SizeIs(1));
+  const double mean =
+      tracks.positions(kStart + milliseconds(1500), rests[0]).position("roll").value();
+  EXPECT_NEAR(std::cos(mean), -1.0, 1e-6);
 }
 
 }  // namespace

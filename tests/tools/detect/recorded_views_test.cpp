@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <random>
 
 #include "support/recording.hpp"
 #include "support/temporary_folder.hpp"
@@ -15,6 +16,7 @@
 namespace kinecal {
 namespace {
 
+using std::chrono::milliseconds;
 using test::kTourStart;
 using test::Recorder;
 using test::Tour;
@@ -158,6 +160,76 @@ TEST_F(RecordedViewsTest, StampsOfAnotherClockAreAnErrorOrADoubt) {
   EXPECT_THAT(diagnostics_.errors, IsEmpty());
   EXPECT_THAT(diagnostics_.doubts,
               ElementsAre(HasSubstr("topic 'cam/image': its stamps are 1.500 s ahead of those")));
+}
+
+TEST_F(RecordedViewsTest, StampsLaterThanTheirRecordingAreADoubt) {
+  for (const int ahead : {60, 150, 800}) {  // messages are recorded 30 ms after their moment
+    record({.camera_ahead = milliseconds(ahead)});
+    diagnostics_ = {};
+    (void)open();
+    EXPECT_THAT(diagnostics_.errors, IsEmpty());
+    EXPECT_THAT(diagnostics_.doubts, ElementsAre(HasSubstr("ahead of those of the joint states")))
+        << ahead;
+  }
+  for (const int ahead : {-300, 0, 40}) {  // latency, or the jitter of exposures
+    record({.camera_ahead = milliseconds(ahead)});
+    diagnostics_ = {};
+    (void)open();
+    EXPECT_THAT(diagnostics_.doubts, IsEmpty()) << ahead;
+  }
+}
+
+TEST_F(RecordedViewsTest, DepthOfAnotherCameraIsAnError) {
+  finders_.front().type = "CheckerboardFinder";
+  for (const double focal : {60.0, 40.0}) {
+    const auto depth = [&](Recorder& to, Stamp stamp, double) {
+      CameraInfo own = small_camera();
+      own.p[0] = own.p[5] = focal;
+      to.camera_info("/depth/camera_info", stamp, own);
+      to.depth("/depth/image", stamp, Image<std::uint16_t>(64, 48, 1000));
+    };
+    record({.more = depth});
+    diagnostics_ = {};
+    (void)open();
+    if (focal == 60.0) {
+      EXPECT_THAT(diagnostics_.errors, IsEmpty());
+    } else {
+      EXPECT_THAT(diagnostics_.errors,
+                  ElementsAre(AllOf(HasSubstr("topic 'depth/image': its depth is not registered"),
+                                    HasSubstr("focal length 40 px instead of 60 px"),
+                                    HasSubstr("record aligned depth"))));
+    }
+  }
+}
+
+TEST_F(RecordedViewsTest, DepthOfAnotherFrameIsAnErrorUnlessTheFrameIsNamed) {
+  finders_.front().type = "CheckerboardFinder";
+  const auto depth = [](Recorder& to, Stamp stamp, double) {
+    to.frame = "depth_optical";
+    to.depth("/depth/image", stamp, Image<std::uint16_t>(64, 48, 1000));
+    to.frame = "optical";
+  };
+  record({.more = depth});
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(AllOf(HasSubstr("frame 'depth_optical' instead of 'optical'"),
+                                HasSubstr("name its frame with --frame"))));
+  diagnostics_ = {};
+  EXPECT_EQ(open({.path = path(), .frame = "optical"}).standstills(), 3U);
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+}
+
+TEST_F(RecordedViewsTest, JointsThatScatterAtRestAreNamed) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 0.06);
+  const auto worn = [&](Recorder& to, Stamp stamp, double) {
+    to.joints("/joint_states", {stamp, {"worn"}, {0.2 + noise(random)}});
+  };
+  record({.more = worn});
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(AllOf(HasSubstr("readings of joints 'worn' scatter even at rest"),
+                                HasSubstr("(radians or metres)"))));
 }
 
 TEST_F(RecordedViewsTest, ARobotThatNeverRestsIsAnErrorThatNamesTheJoint) {

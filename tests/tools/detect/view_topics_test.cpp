@@ -93,5 +93,14 @@ TEST(ViewTopics, AMissingCameraIsAWarningAndSeveralAreAnError) {
               ElementsAre(HasSubstr("camera_info on topics 'l/camera_info', 'r/camera_info'")));
 }
 
+TEST(ViewTopics, SixteenBitGrayIsDepthIfItsNameSaysSo) {
+  const RecordedTopic depth{"cam/depth/image_raw", "sensor_msgs/Image", "mono16"},
+      infrared{"cam/infra/image_raw", "sensor_msgs/Image", "mono16"};
+  const Chosen chosen = choose({kImage, depth, kInfo}, finder(kPoints, "/cam/image_raw"));
+  EXPECT_EQ(chosen.topics.depth, depth.name);
+  EXPECT_EQ(choose({infrared, kInfo}, finder(kPixels, "/x")).topics.image, infrared.name);
+  EXPECT_EQ(camera_info_beside("cam/depth/image/compressedDepth"), "cam/depth/camera_info");
+}
+
 }  // namespace
 }  // namespace kinecal

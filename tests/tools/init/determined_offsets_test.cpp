@@ -113,16 +113,28 @@ TEST(DeterminedOffsets, AreNoneOfAJointThatMovesTargetAndCameraAlike) {
   camera.child = "camera";
   camera.origin = {exp(Vector3<double>(0.0, std::numbers::pi / 2.0, 0.0)), {0.0, 0.0, 1.0}};
   std::vector<Joint> all;
+  for (const char* name : {"odom_x", "odom_turn"}) {  // a base that drives anywhere
+    Joint odometry;
+    odometry.name = name;
+    odometry.type = all.empty() ? JointType::prismatic : JointType::continuous;
+    odometry.parent = all.empty() ? "odom" : "odom_x_link";
+    odometry.child = all.empty() ? "odom_x_link" : "base";
+    odometry.axis = all.empty() ? kX : kZ;
+    odometry.limits = JointLimits{-500.0, 500.0};
+    all.push_back(odometry);
+  }
   for (std::size_t i = 0; i < 7; ++i) all.push_back(arm.joint(i));
   all.push_back(camera);
   const Robot robot("r", all);
-  MeasuredTarget measured{"base", "j6_link", "camera"};
+  MeasuredTarget measured{"odom", "j6_link", "camera"};
   measured.is_camera = true;
   const OffsetEffects effects =
       offset_effects(robot, measured, {"camera_joint"}, driven_joints(robot, measured));
-  EXPECT_FALSE(effects.offsets[0].is_seen);
-  EXPECT_EQ(effects.offsets[1].imitated_by, "camera_joint");
-  EXPECT_TRUE(effects.offsets[6].determined) << "points at known places";
+  for (std::size_t i = 0; i < 3; ++i) {  // odometry and the slide
+    EXPECT_FALSE(effects.offsets[i].is_seen) << effects.offsets[i].joint;
+  }
+  EXPECT_EQ(effects.offsets[3].imitated_by, "camera_joint");
+  EXPECT_TRUE(effects.offsets[8].determined) << "points at known places";
 }
 
 }  // namespace

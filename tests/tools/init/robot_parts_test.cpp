@@ -69,6 +69,22 @@ TEST(ProposeArms, EndsBeforeTheMotorsOfAGripper) {
   EXPECT_THAT(propose_arms(Robot("r", wrist)), ElementsAre("link4")) << "a wrist";
 }
 
+TEST(ProposeArms, NamesLegsOnlyIfThereIsNothingElse) {
+  constexpr JointType kTurns = JointType::revolute;
+  std::vector<Joint> joints;
+  const auto add_row = [&](const std::vector<std::string>& names) {
+    std::string parent = "torso";
+    for (const std::string& name : names) {
+      joints.push_back({name, kTurns, parent, name + "_link", {}});
+      parent = name + "_link";
+    }
+  };
+  add_row({"LHipYaw", "LHipRoll", "LHipPitch", "LKneePitch", "LAnklePitch", "LAnkleRoll"});
+  EXPECT_THAT(propose_arms(Robot("r", joints)), ElementsAre("LAnkleRoll_link"));
+  add_row({"LShoulderPitch", "LShoulderRoll", "LElbowYaw", "LWristYaw"});
+  EXPECT_THAT(propose_arms(Robot("r", joints)), ElementsAre("LWristYaw_link"));
+}
+
 TEST(ProposeArms, NamesNoWheels) {
   constexpr JointType kTurns = JointType::continuous;
   EXPECT_THAT(propose_arms(Robot("r", row({{"lift", kTurns},

@@ -10,6 +10,7 @@
 #include "kinecal/capture/boards/board_grid.hpp"
 #include "kinecal/capture/boards/corner_depth.hpp"
 #include "kinecal/capture/boards/target_pose.hpp"
+#include "kinecal/capture/finders/view_checks.hpp"
 
 namespace kinecal {
 
@@ -79,7 +80,7 @@ namespace {
 
 std::string view_fault(const View& view, CornerKind corners) {
   const GrayImage& image = view.image;
-  if (image.empty()) return "the view has no image";
+  if (std::string problem = image_problem(view); !problem.empty()) return problem;
   const std::string size = detail::pixels_text(image.width, image.height);
   if (!view.camera) return "the view has no camera_info";
   const CameraInfo& camera = *view.camera;

@@ -51,6 +51,11 @@ std::vector<double> projection_errors(const View& view) {
 }  // namespace detail
 
 std::string image_problem(const View& view) {
+  if (view.image.height == 1 && view.points.height == 1 && view.points.width > 1) {
+    return "the cloud is a list of " + std::to_string(view.points.width) +
+           " points, without rows and columns in which features can be found; publish an ordered "
+           "cloud (realsense2_camera: pointcloud.ordered_pc), or use depth images";
+  }
   return detail::pixels_problem(view.image, "image");
 }
 

@@ -8,7 +8,8 @@
 
 namespace kinecal {
 
-/// Why the image of a view cannot be used; empty if it can.
+/// Why the image of a view cannot be used; empty if it can.  The colours of a list of points are not
+/// an image.
 [[nodiscard]] std::string image_problem(const View& view);
 
 /// Why the cloud of a view cannot be used; empty if it can.  Points may be missing.

@@ -42,6 +42,23 @@ struct ViewFault {
   double largest_ = 0.0;
 };
 
+/// The joints of the goal, or those between its camera and its target.
+[[nodiscard]] inline std::set<std::string> moving_joints(const Robot& robot, const ViewGoal& goal) {
+  std::set<std::string> names;
+  for (const std::string& name : goal.joints) names.insert(drive(robot, robot.joint(name)).joint);
+  if (!goal.joints.empty()) return names;
+  const RuntimeChain chain = make_chain(robot, goal.camera, goal.target, {});
+  for (const ChainJoint& joint : chain.joints) names.insert(std::string(joint.drive.joint));
+  return names;
+}
+
+/// Where a joint is that does not move, radians or metres.
+[[nodiscard]] inline double rest_of(const Joint& joint, const ViewGoal& goal) {
+  const auto given = goal.rest.find(joint.name);
+  if (given != goal.rest.end()) return given->second;
+  return std::clamp(0.0, position_in_range(joint, 0.0), position_in_range(joint, 1.0));
+}
+
 // Distance of a pose from a good view of a target.
 
 /// A goal for one robot.
@@ -55,9 +72,13 @@ class ViewSearch {
         target_(body_.link(goal.target)),
         lens_(goal.info, goal.image) {
     if (goal.points.empty()) throw std::invalid_argument("a target without points to look at");
+    if (names_.empty()) {
+      throw std::invalid_argument("no joint moves '" + goal.camera + "' against '" + goal.target +
+                                  "'");
+    }
     for (const std::string& name : body_.joints()) joints_.push_back(robot.joint(name));
     for (const std::string& name : names_) chosen_.push_back(index_of(name));
-    for (const Joint& joint : joints_) middle_.push_back(rest_of(joint));
+    for (const Joint& joint : joints_) middle_.push_back(rest_of(joint, goal));
     for (const Vector3<double>& point : goal.points) {
       centre_ += point / static_cast<double>(goal.points.size());
     }
@@ -135,26 +156,11 @@ class ViewSearch {
   }
 
  private:
-  /// The joints of the goal, or those between its camera and its target.
-  [[nodiscard]] static std::set<std::string> moving_joints(const Robot& robot,
-                                                           const ViewGoal& goal) {
-    std::set<std::string> names;
-    for (const std::string& name : goal.joints) {
-      names.insert(drive(robot, robot.joint(name)).joint);
-    }
-    if (!goal.joints.empty()) return names;
-    const RuntimeChain chain = make_chain(robot, goal.camera, goal.target, {});
-    for (const ChainJoint& joint : chain.joints) names.insert(std::string(joint.drive.joint));
-    if (!names.empty()) return names;
-    throw std::invalid_argument("no joint moves '" + goal.camera + "' against '" + goal.target +
-                                "'");
-  }
-
   /// Positions of the others.
   [[nodiscard]] std::map<std::string, double> held_joints(const Robot& robot) const {
     std::map<std::string, double> held;
     for (const Joint& joint : robot.joints()) {
-      if (!names_.contains(joint.name)) held[joint.name] = rest_of(joint);
+      if (!names_.contains(joint.name)) held[joint.name] = rest_of(joint, goal_);
     }
     return held;
   }
@@ -164,12 +170,6 @@ class ViewSearch {
     const auto found = std::find(all.begin(), all.end(), name);
     if (found != all.end()) return static_cast<std::size_t>(found - all.begin());
     throw std::invalid_argument("joint '" + name + "' does not move anything of the robot");
-  }
-
-  [[nodiscard]] double rest_of(const Joint& joint) const {
-    const auto given = goal_.rest.find(joint.name);
-    if (given != goal_.rest.end()) return given->second;
-    return std::clamp(0.0, position_in_range(joint, 0.0), position_in_range(joint, 1.0));
   }
 
   void add_point(const Vector3<double>& p, ViewFault& fault, std::array<double, 4>& box) const {
@@ -272,6 +272,26 @@ using Places = std::vector<std::vector<double>>;
 }
 
 }  // namespace detail
+
+double floor_height(const Robot& robot, const ViewGoal& goal) {
+  const RobotBody body(robot, goal.base, goal.radius);
+  const std::set<std::string> moved = detail::moving_joints(robot, goal);
+  std::vector<double> rest, elsewhere;
+  for (const std::string& name : body.joints()) {
+    constexpr double kStep = 0.1;  // radians or metres
+    rest.push_back(detail::rest_of(robot.joint(name), goal));
+    elsewhere.push_back(rest.back() + (moved.contains(name) ? kStep : 0.0));
+  }
+  const std::vector<Pose<double>> here = body.poses(rest), there = body.poses(elsewhere);
+  constexpr double kMoved = 1e-9, kFlat = 0.01;  // metres; wheels may be a little lower
+  double lowest = -kFlat;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const bool moves = (here[i].translation - there[i].translation).norm() > kMoved ||
+                       (here[i].rotation - there[i].rotation).norm() > kMoved;
+    if (!moves) lowest = std::min(lowest, here[i].translation.z());
+  }
+  return lowest < -kFlat ? lowest : 0.0;
+}
 
 std::vector<JointTarget> poses_with_view_of(const Robot& robot, const ViewGoal& goal, int count,
                                             std::uint64_t seed) {

@@ -42,6 +42,11 @@ struct ViewGoal {
       {};  ///< of the others, radians or metres; zero if not listed
 };
 
+/// Height of the floor in the base, metres: 0, or below it that of the lowest link that the poses do
+/// not move, such as the feet of a robot whose root is its torso.
+/// @throws RobotError  if a link or joint does not exist
+[[nodiscard]] double floor_height(const Robot& robot, const ViewGoal& goal);
+
 /// Poses in which the camera sees the whole target, spread over the ranges of the joints.
 /// @param count  number of poses; fewer if no more are found
 /// @returns      targets for the same joints, in an order with short paths

@@ -21,13 +21,18 @@ NextPose poses_of(std::vector<CapturePose> poses) {
 }
 
 std::vector<CapturePose> poses_left(std::span<const CapturePose> poses,
-                                    std::span<const Sample> samples, double arrival) {
+                                    std::span<const Sample> samples,
+                                    const SettleOptions& settling) {
   std::vector<bool> taken(poses.size(), false);
   const auto matches = [&](const CapturePose& pose, const Sample& sample) {
     if (pose.joint_names.empty()) return false;
     for (std::size_t i = 0; i < pose.joint_names.size() && i < pose.positions.size(); ++i) {
-      const std::optional<double> position = sample.position(pose.joint_names[i]);
-      if (!position || !(std::abs(*position - pose.positions[i]) <= arrival)) return false;
+      const std::string& name = pose.joint_names[i];
+      const std::optional<double> position = sample.position(name);
+      if (!position || !(joint_distance(name, *position, pose.positions[i], settling.continuous) <=
+                         settling.arrival)) {
+        return false;
+      }
     }
     return true;
   };
@@ -98,10 +103,13 @@ std::vector<Sample> samples_of(const MeasuredJoints& joints,
 }
 
 std::string moved_meanwhile(const MeasuredJoints& before, const MeasuredJoints& after,
-                            double limit) {
+                            const SessionOptions& options) {
   for (std::size_t i = 0; i < before.names.size(); ++i) {
     const std::optional<double> now = after.position(before.names[i]);
-    if (now && std::abs(*now - before.positions[i]) <= limit) continue;
+    if (now && joint_distance(before.names[i], *now, before.positions[i],
+                              options.settling.continuous) <= options.moved) {
+      continue;
+    }
     std::ostringstream text;
     text << "joint '" << before.names[i] << "' moved while finders looked";
     if (now) text << ": from " << before.positions[i] << " to " << *now;

@@ -3,7 +3,8 @@
 // For each pose: move, wait until joints and image are still, run the pose's finders, check that
 // nothing moved meanwhile.  A pose that fails is skipped, with the reason.  The session stores
 // nothing: the observer writes each sample at once, so a crash loses at most the one in progress.
-// A stream that is silent in two poses is dead, and ends the session.  Before the first motion, one
+// A stream that is silent in two poses is dead, and ends the session; so is a camera that shows the
+// same image, pixel for pixel, after a joint has moved.  Before the first motion, one
 // look at joints, cameras and clocks finds what would fail in every pose; the same fault in the first
 // three poses ends the session, too.
 //
@@ -46,10 +47,10 @@ void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> fi
 
 /// The poses not captured yet, to resume a session: each sample counts for the first pose that its
 /// joint positions match.
-/// @param arrival  tolerance of a joint, radians or metres
+/// @param settling  tolerance of a joint, and joints that turn without end
 [[nodiscard]] std::vector<CapturePose> poses_left(std::span<const CapturePose> poses,
                                                   std::span<const Sample> samples,
-                                                  double arrival = SettleOptions{}.arrival);
+                                                  const SettleOptions& settling = {});
 
 /// A finder of one view, for a session.
 /// @param camera  must outlive the result
@@ -72,12 +73,12 @@ namespace detail {
 
 /// Why a sample cannot be used: a joint that moved while finders looked; empty if none did.
 [[nodiscard]] std::string moved_meanwhile(const MeasuredJoints& before, const MeasuredJoints& after,
-                                          double limit);
+                                          const SessionOptions& options);
 
 /// Runs the finders of a pose where the robot stands, and returns their results.
 template <RobotArm A>
 void look(A& arm, const MeasuredJoints& joints, std::span<const SessionFinder* const> finders,
-          const SessionOptions& options, CapturedPose& captured) {
+          const SessionOptions& options, FrozenCameras& frozen, CapturedPose& captured) {
   for (const SessionFinder* finder : finders) {
     FinderOutcome& outcome = captured.outcomes.emplace_back();
     outcome.finder = finder->name;
@@ -85,13 +86,14 @@ void look(A& arm, const MeasuredJoints& joints, std::span<const SessionFinder* c
     outcome.view.joints = joints;
     outcome.found = finder->find(outcome.view);
   }
+  frozen.add(joints, captured.outcomes, options.settling);
   Stamp latest = joints.stamp;
   for (const FinderOutcome& outcome : captured.outcomes) {
     latest = std::max(latest, outcome.view.stamp);
   }
   // The sample gets the later positions: by then the last motion is over.
   const MeasuredJoints now = settle_joints(arm, {}, latest, options.settling);
-  captured.failure = moved_meanwhile(joints, now, options.moved);
+  captured.failure = moved_meanwhile(joints, now, options);
   if (captured.failure.empty()) captured.samples = samples_of(now, captured.outcomes);
 }
 
@@ -103,13 +105,14 @@ void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> fi
   Stamp now = Stamp::min();
   detail::SilentStreams silent;
   detail::AlikeFaults alike;
+  detail::FrozenCameras frozen;
   bool has_looked = !options.look_first;
   while (std::optional<CapturePose> pose = next()) {
     CapturedPose captured;
     captured.pose = std::move(*pose);
     const auto wanted = detail::finders_of(captured.pose, finders);
     if (!std::exchange(has_looked, true)) {
-      const std::string why = detail::first_look(arm, captured.pose, wanted, options.settling);
+      const std::string why = detail::first_look(arm, captured.pose, wanted, options);
       if (!why.empty()) throw HopelessError(why + "; the robot has not moved");
     }
     std::optional<Stamp> start;
@@ -121,7 +124,7 @@ void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> fi
                                options.velocity_factor};
       if (!target.names.empty()) arm.move(target);
       const MeasuredJoints joints = settle_joints(arm, target, now, options.settling);
-      detail::look(arm, joints, wanted, options, captured);
+      detail::look(arm, joints, wanted, options, frozen, captured);
       now = arm.next_joints(joints.stamp).stamp;
     } catch (const SilenceError& error) {
       captured.failure = error.what();

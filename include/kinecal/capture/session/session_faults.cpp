@@ -2,15 +2,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/capture/session/session_faults.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
 #include "kinecal/text/nearest_name.hpp"
 
-namespace kinecal::detail {
+namespace kinecal {
+
+std::string like_degrees(const MeasuredJoints& joints, const Robot& robot) {
+  constexpr double kTurn = 2.0 * std::numbers::pi, kMargin = 0.2;  // radians
+  for (std::size_t i = 0; i < joints.names.size(); ++i) {
+    const std::string& name = joints.names[i];
+    if (!robot.has_joint(name)) continue;
+    const Joint& joint = robot.joint(name);
+    if (joint.type != JointType::revolute || !joint.limits) continue;
+    const auto [lower, upper] = *joint.limits;
+    const double q = joints.positions[i], beyond = std::max(lower - q, q - upper);
+    const bool is_far = beyond > upper - lower || (beyond > kMargin && std::abs(q) > kTurn);
+    if (!(upper > lower) || !is_far) continue;
+    std::ostringstream text;
+    text << "joint '" << name << "' is at " << q << ", far beyond its limits of " << lower << " to "
+         << upper << " rad: are positions in degrees? radians are expected";
+    return text.str();
+  }
+  return {};
+}
+
+namespace detail {
 
 std::string SilentStreams::add(const SilenceError& error) {
   const auto [known, is_first] = newest_.try_emplace(error.stream, error.newest);
   const bool is_dead = !is_first && known->second == error.newest;
   known->second = error.newest;
-  return is_dead ? std::string(error.what()) + "; nothing came in two poses" : std::string();
+  return is_dead ? std::string(error.what()) + "; the same in two poses" : std::string();
 }
 
 std::string AlikeFaults::add(const CapturedPose& pose, int most) {
@@ -29,6 +55,33 @@ std::string AlikeFaults::add(const CapturedPose& pose, int most) {
   return "the same in " + std::to_string(count_) + " poses in a row, and nothing was found: " + why;
 }
 
+void FrozenCameras::add(const MeasuredJoints& joints, std::span<const FinderOutcome> outcomes,
+                        const SettleOptions& options) {
+  for (const FinderOutcome& outcome : outcomes) {
+    const View& view = outcome.view;
+    if (!outcome.found || view.image.empty()) continue;
+    const auto [known, is_new] =
+        last_.try_emplace(outcome.finder, Seen{joints, view.stamp, view.image});
+    if (is_new) continue;
+    Seen& seen = known->second;
+    const bool is_same = seen.image.width == view.image.width &&
+                         seen.image.height == view.image.height &&
+                         seen.image.pixels == view.image.pixels;
+    for (std::size_t i = 0; is_same && i < joints.names.size(); ++i) {
+      const std::string& name = joints.names[i];
+      const double before = seen.joints.position(name).value_or(joints.positions[i]);
+      if (joint_distance(name, before, joints.positions[i], options.continuous) <= options.arrival)
+        continue;
+      std::ostringstream text;
+      text << outcome.finder << ": its camera is frozen: joint '" << name << "' has moved from "
+           << before << " to " << joints.positions[i]
+           << ", but each pixel is as in the pose before; restart the camera's driver";
+      throw SilenceError(text.str(), outcome.finder, seen.stamp);
+    }
+    if (!is_same) seen = {joints, view.stamp, view.image};
+  }
+}
+
 std::string not_measured(const CapturePose& pose, const MeasuredJoints& joints) {
   for (const std::string& joint : pose.joint_names) {
     if (joints.position(joint)) continue;
@@ -44,4 +97,5 @@ std::string useless_views(const SessionFinder& finder, Stamp joints, const Settl
   return why.empty() ? why : finder.name + ": " + why;
 }
 
-}  // namespace kinecal::detail
+}  // namespace detail
+}  // namespace kinecal

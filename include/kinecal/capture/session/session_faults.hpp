@@ -17,6 +17,10 @@ struct HopelessError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Why joint positions cannot be radians of this robot: one far beyond its limits, as degrees are;
+/// empty if all can be.
+[[nodiscard]] std::string like_degrees(const MeasuredJoints& joints, const Robot& robot);
+
 namespace detail {
 
 /// Streams that have been silent.
@@ -43,6 +47,25 @@ class AlikeFaults {
   std::string last_;  ///< fault, without its numbers
 };
 
+/// Finds cameras that send the same image again and again.  Two images of a real camera differ by
+/// noise.
+class FrozenCameras {
+ public:
+  /// Takes what finders have seen in a pose.
+  /// @throws SilenceError  if a finder found its target in the very image of the last pose, although
+  ///                       a joint has moved
+  void add(const MeasuredJoints& joints, std::span<const FinderOutcome> outcomes,
+           const SettleOptions& options);
+
+ private:
+  struct Seen {
+    MeasuredJoints joints;
+    Stamp stamp;  ///< of the first view with this image
+    GrayImage image;
+  };
+  std::map<std::string, Seen> last_;  ///< by finder
+};
+
 /// A pose's joint that is not measured; empty if all are.
 [[nodiscard]] std::string not_measured(const CapturePose& pose, const MeasuredJoints& joints);
 
@@ -55,14 +78,15 @@ class AlikeFaults {
 template <RobotArm A>
 [[nodiscard]] std::string first_look(A& arm, const CapturePose& pose,
                                      std::span<const SessionFinder* const> finders,
-                                     const SettleOptions& options) {
+                                     const SessionOptions& options) {
   std::string why;
   for (int attempt = 0; attempt < 2; ++attempt) {  // the first message may be of the past
     try {
       const MeasuredJoints joints = arm.next_joints(Stamp::min());
       why = not_measured(pose, joints);
+      if (why.empty() && options.fault) why = options.fault(joints);
       for (std::size_t i = 0; i < finders.size() && why.empty(); ++i) {
-        why = useless_views(*finders[i], joints.stamp, options);
+        why = useless_views(*finders[i], joints.stamp, options.settling);
       }
     } catch (const PoseError& error) {
       why = error.what();

@@ -27,6 +27,8 @@ struct SessionOptions {
   double moved = 0.003;          ///< allowed joint motion while finders look, radians or metres
   bool look_first = true;        ///< at joints, cameras and clocks, before the first motion
   int hopeless = 3;              ///< poses that fail alike before any sample; 0: go on
+  /// Why the first joint positions cannot be those of this robot: degrees; empty: not asked.
+  std::function<std::string(const MeasuredJoints&)> fault = {};
 };
 
 /// The result of one finder in one pose.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
+#include <numbers>
 #include <sstream>
 #include <utility>
 
@@ -20,6 +21,22 @@ std::string seconds_text(Stamp duration) {
   text.precision(4);
   text << std::chrono::duration<double>(duration).count() << " s";
   return text.str();
+}
+
+double unwrapped_step(double from, double to) {
+  const double step = to - from;
+  return std::abs(step) > std::numbers::pi ? std::remainder(step, 2.0 * std::numbers::pi) : step;
+}
+
+double reading_noise(std::span<const double> readings) {
+  if (readings.size() < 3) return 0.0;
+  double sum = 0.0;
+  for (std::size_t i = 2; i < readings.size(); ++i) {
+    const double bend = readings[i - 2] - 2.0 * readings[i - 1] + readings[i];
+    sum += bend * bend;
+  }
+  constexpr double kOfSecondDifferences = 6.0;  // 1 + 4 + 1 times the variance of a reading
+  return std::sqrt(sum / (kOfSecondDifferences * static_cast<double>(readings.size() - 2)));
 }
 
 std::string clock_fault(Stamp view, Stamp joints, const SettleOptions& options) {
@@ -47,6 +64,12 @@ void JointRest::add(MeasuredJoints reading) {
           " after " + detail::seconds_text(last.stamp));
     }
     if (reading.names != last.names) throw PoseError("joint states change their joints");
+    for (std::size_t i = 0; i < reading.positions.size(); ++i) {
+      const double before = last.positions[i];
+      double& now = reading.positions[i];
+      if (std::abs(now - before) > std::numbers::pi)
+        now = before + detail::unwrapped_step(before, now);
+    }
   }
   readings_.push_back(std::move(reading));
   const Stamp begin = readings_.back().stamp - options_.window;
@@ -69,10 +92,44 @@ bool JointRest::still() const {
   if (readings_.back().stamp - readings_.front().stamp < options_.window) return false;
   const std::size_t half = readings_.size() / 2;
   const std::vector<double> before = mean_of(0, half), now = mean_of(half, readings_.size());
+  constexpr double kSurely = 4.0;  // standard deviations
+  const double of_halves = std::sqrt(1.0 / static_cast<double>(half) +
+                                     1.0 / static_cast<double>(readings_.size() - half));
   for (std::size_t i = 0; i < now.size(); ++i) {
-    if (std::abs(now[i] - before[i]) > options_.still) return false;
+    const double by_noise = noise_.empty() ? 0.0 : kSurely * noise_[i] * of_halves;
+    if (std::abs(now[i] - before[i]) > std::max(options_.still, by_noise)) return false;
+    if (detail::reading_noise(readings_of(i)) > options_.most_noise) return false;
   }
   return true;
+}
+
+std::vector<double> JointRest::readings_of(std::size_t joint) const {
+  std::vector<double> positions;
+  for (const MeasuredJoints& reading : readings_) positions.push_back(reading.positions[joint]);
+  return positions;
+}
+
+std::string JointRest::why_not_still() const {
+  const std::vector<std::string>& names = readings_.back().names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::vector<double> positions = readings_of(i);
+    const auto [low, high] = std::minmax_element(positions.begin(), positions.end());
+    // Of a joint that moves one way, the sum of all steps is the distance between the ends.
+    double way = 0.0;
+    for (std::size_t r = 1; r < positions.size(); ++r) {
+      way += std::abs(positions[r] - positions[r - 1]);
+    }
+    constexpr double kToAndFro = 3.0;
+    if (detail::reading_noise(positions) <= options_.most_noise ||
+        way < kToAndFro * (*high - *low)) {
+      continue;
+    }
+    std::ostringstream text;
+    text << "readings of joint '" << names[i] << "' jump between " << *low << " and " << *high
+         << ": do two nodes publish its positions";
+    return text.str();
+  }
+  return "joints do not stop";
 }
 
 MeasuredJoints JointRest::mean() const {
@@ -92,7 +149,7 @@ std::string JointRest::not_arrived(const JointTarget& target) const {
       throw PoseError("joint '" + name + "' of the pose is not measured" +
                       did_you_mean(name, now.names));
     }
-    const double away = std::abs(*position - target.positions[i]);
+    const double away = joint_distance(name, *position, target.positions[i], options_.continuous);
     if (away <= farthest) continue;
     farthest = away;
     text.str({});
@@ -100,6 +157,20 @@ std::string JointRest::not_arrived(const JointTarget& target) const {
          << target.positions[i] << " was asked for";
   }
   return text.str();
+}
+
+double joint_distance(const std::string& joint, double a, double b,
+                      const std::set<std::string>& continuous) {
+  const bool endless = continuous.count(joint) > 0;
+  return std::abs(endless ? std::remainder(a - b, 2.0 * std::numbers::pi) : a - b);
+}
+
+std::set<std::string> continuous_joints(const Robot& robot) {
+  std::set<std::string> names;
+  for (const Joint& joint : robot.joints()) {
+    if (joint.type == JointType::continuous) names.insert(joint.name);
+  }
+  return names;
 }
 
 double changed_pixels(const GrayImage& a, const GrayImage& b, int gray_levels) {

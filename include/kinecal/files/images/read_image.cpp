@@ -17,6 +17,11 @@ GrayImage decode_image(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("\xff\xd8\xff")) return detail::jpeg_brightness(bytes, name);
   if (bytes.starts_with("BM")) return detail::bmp_brightness(bytes, name);
   if (detail::is_tiff(bytes)) return detail::tiff_brightness(bytes, name);
+  if (bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP")) {
+    throw InputError(name +
+                     ": is WebP, which is not read; convert it to PNG (dwebp), or record PNG or "
+                     "JPEG");
+  }
   throw InputError(name + ": is not a PNG, JPEG, BMP or TIFF; convert the image to one of them");
 }
 

@@ -40,12 +40,13 @@ struct MessageRows {
 /// @throws BytesError  if the size of the data does not match its rows
 [[nodiscard]] inline MessageRows rows_of(const MessageFields& message, const char* step,
                                          std::size_t item) {
-  constexpr double kMost = 1 << 16;
+  constexpr double kMost = 1 << 16, kMostInList = 1 << 24;  // a list of points has one row
   const double width = number_at(message, "width"), height = number_at(message, "height");
   const MessageValue* data = field_at(message, "data");
   const auto* bytes = data == nullptr ? nullptr : data->as<Bytes>();
   MessageRows rows;
-  const bool fits = width >= 1 && width <= kMost && height >= 1 && height <= kMost;
+  const bool fits =
+      width >= 1 && width <= (height == 1 ? kMostInList : kMost) && height >= 1 && height <= kMost;
   if (fits && bytes != nullptr) {
     rows.width = static_cast<int>(width);
     rows.height = static_cast<int>(height);
@@ -203,33 +204,44 @@ bool is_depth(std::string_view encoding) {
 
 // Point clouds from sensor_msgs/PointCloud2.
 
-/// Marks an absent field of a point.
-inline constexpr std::size_t kNoField = 1 << 20;
+/// A number in each point.
+struct PointField {
+  std::size_t offset = 1 << 20;       ///< bytes; beyond any point: absent
+  std::size_t bytes = sizeof(float);  ///< 4, or 8 for a double
+};
 
-/// Offset of a field in each point; kNoField if the cloud does not have it as a 4-byte number.
-[[nodiscard]] inline std::size_t point_field(const MessageFields& cloud, std::string_view name) {
-  constexpr double kUint32 = 6, kFloat32 = 7;
+/// A field of each point, as a number of 4 bytes or a double.
+[[nodiscard]] inline PointField point_field(const MessageFields& cloud, std::string_view name) {
+  constexpr double kUint32 = 6, kFloat32 = 7, kFloat64 = 8;
   for (const MessageValue& item : list_at(cloud, "fields")) {
     const auto* field = item.as<MessageFields>();
     if (field == nullptr || text_at(*field, "name") != name) continue;
     const double type = number_at(*field, "datatype");
-    if (type != kUint32 && type != kFloat32) continue;
-    return static_cast<std::size_t>(number_at(*field, "offset"));
+    if (type != kUint32 && type != kFloat32 && type != kFloat64) continue;
+    return {static_cast<std::size_t>(number_at(*field, "offset")),
+            type == kFloat64 ? sizeof(double) : sizeof(float)};
   }
-  return kNoField;
+  return {};
 }
 
-[[nodiscard]] inline float float_at(const MessageRows& rows, int row, std::size_t byte) {
-  return rows.at(row, byte).number<float>();
+/// @param point  first byte in the row
+[[nodiscard]] inline float float_at(const MessageRows& rows, int row, std::size_t point,
+                                    const PointField& field) {
+  ByteReader bytes = rows.at(row, point + field.offset);
+  return field.bytes == sizeof(double) ? static_cast<float>(bytes.number<double>())
+                                       : bytes.number<float>();
 }
 
 void read_cloud(const MessageFields& cloud, PointCloud& points, GrayImage& image) {
-  const std::size_t x = point_field(cloud, "x"), y = point_field(cloud, "y"),
-                    z = point_field(cloud, "z");
-  const std::size_t rgb = std::min(point_field(cloud, "rgb"), point_field(cloud, "rgba"));
+  const PointField x = point_field(cloud, "x"), y = point_field(cloud, "y"),
+                   z = point_field(cloud, "z");
+  const std::size_t rgb =
+      std::min(point_field(cloud, "rgb").offset, point_field(cloud, "rgba").offset);
   const auto point_step = static_cast<std::size_t>(number_at(cloud, "point_step"));
-  if (std::max({x, y, z}) + sizeof(float) > point_step) {
-    throw std::runtime_error("the cloud has no float32 fields x, y, z within its points");
+  for (const PointField& field : {x, y, z}) {
+    if (field.offset + field.bytes <= point_step) continue;
+    throw std::runtime_error(
+        "the cloud has no float32 or float64 fields x, y, z within its points");
   }
   const MessageRows rows = rows_of(cloud, "row_step", point_step);
   const bool has_colour = image.empty() && rgb + sizeof(float) <= point_step;
@@ -238,8 +250,8 @@ void read_cloud(const MessageFields& cloud, PointCloud& points, GrayImage& image
   for (int v = 0; v < rows.height; ++v) {
     for (int u = 0; u < rows.width; ++u) {
       const std::size_t at = static_cast<std::size_t>(u) * point_step;
-      const float px = float_at(rows, v, at + x), py = float_at(rows, v, at + y),
-                  pz = float_at(rows, v, at + z);
+      const float px = float_at(rows, v, at, x), py = float_at(rows, v, at, y),
+                  pz = float_at(rows, v, at, z);
       if (std::isfinite(px) && std::isfinite(py) && std::isfinite(pz)) points(u, v) << px, py, pz;
       if (!has_colour) continue;
       constexpr unsigned kByte = 0xff;

@@ -3,12 +3,17 @@
 #include "kinecal/tools/detect/detect_all.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "kinecal/capture/session/settling.hpp"
 #include "kinecal/evaluation/parallel.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/text/printable.hpp"
 #include "kinecal/tools/detect/rig_views.hpp"
 
 namespace kinecal {
@@ -47,6 +52,52 @@ void add_finder_notes(const std::vector<Look>& looks, Diagnostics& diagnostics) 
   }
 }
 
+/// The joint that has moved between two samples; empty if none has.
+[[nodiscard]] std::string moved_joint(const Sample& a, const Sample& b) {
+  constexpr double kMoved = 0.03;  // radians or metres
+  for (std::size_t i = 0; i < a.joint_names.size() && i < a.joint_positions.size(); ++i) {
+    const auto there = b.position(a.joint_names[i]);
+    if (there && std::abs(unwrapped_step(a.joint_positions[i], *there)) > kMoved) {
+      return a.joint_names[i];
+    }
+  }
+  return {};
+}
+
+/// Refuses views with the very features of another one, although a joint has moved: the camera was
+/// frozen.  Two images of a real camera differ by noise.
+void refuse_frozen(std::vector<Look>& looks) {
+  std::map<std::vector<double>, std::size_t> firsts;  // looks, by all coordinates
+  std::map<std::size_t, std::string> frozen;          // what is said of the first look
+  std::vector<std::size_t> first_of(looks.size());
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    std::vector<double> all;
+    for (const Sample& sample : looks[i].samples) {
+      for (const Observation& observation : sample.observations) {
+        for (const Feature& feature : observation.features) {
+          all.insert(all.end(), feature.point.begin(), feature.point.end());
+        }
+      }
+    }
+    first_of[i] = i;
+    if (all.empty()) continue;
+    const std::size_t first = firsts.try_emplace(std::move(all), i).first->second;
+    first_of[i] = first;
+    const std::string joint = moved_joint(looks[first].samples.front(), looks[i].samples.front());
+    if (joint.empty()) continue;
+    frozen.try_emplace(first, "the image is that of " + looks[first].source + ", although joint '" +
+                                  printable(joint) +
+                                  "' has moved: the camera was frozen, or one file is there twice");
+  }
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const auto why = frozen.find(first_of[i]);
+    if (why == frozen.end()) continue;
+    looks[i].samples.clear();
+    looks[i].features = 0;
+    looks[i].refused.push_back(why->second);
+  }
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -60,6 +111,7 @@ DetectedSamples detect_all(const DetectionInput& input, const DetectionOptions& 
                         options.meter};
   DetectedSamples found;
   const auto add = [&](std::vector<Look> looks) {
+    detail::refuse_frozen(looks);
     for (Look& look : looks) {
       found.features += look.features;
       found.used += look.samples.empty() ? 0 : 1;

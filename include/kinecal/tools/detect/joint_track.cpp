@@ -4,58 +4,156 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "kinecal/geometry/median.hpp"
 
 namespace kinecal::detail {
-
-double unwrapped_step(double from, double to) {
-  const double step = to - from;
-  return std::abs(step) > std::numbers::pi ? std::remainder(step, 2.0 * std::numbers::pi) : step;
-}
-
-void JointTrack::add(Stamp stamp, const std::vector<double>& positions) {
-  constexpr std::chrono::milliseconds kBin{10};
-  constexpr std::chrono::seconds kBack{1};
-  const bool first = stamps.empty();
-  if (!first && stamp < newest - kBack && !back) back = Standstill{stamp, newest};
-  newest = first ? stamp : std::max(newest, stamp);
-  if (first || stamp < bin || stamp >= bin + kBin) {
-    stamps.push_back(stamp);
-    rows.push_back(positions);
-    bin = stamp;
-    readings = 1;
-    return;
-  }
-  ++readings;
-  stamps.back() += (stamp - stamps.back()) / readings;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    rows.back()[i] += unwrapped_step(rows.back()[i], positions[i]) / readings;
-  }
-}
-
-void JointTrack::sort() {
-  if (std::is_sorted(stamps.begin(), stamps.end())) return;
-  std::vector<std::size_t> order(stamps.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return stamps[a] < stamps[b]; });
-  JointTrack sorted = *this;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    sorted.stamps[i] = stamps[order[i]];
-    sorted.rows[i] = rows[order[i]];
-  }
-  *this = std::move(sorted);
-}
 
 /// The usual time between stamps.
 [[nodiscard]] inline Stamp usual_period(const std::vector<Stamp>& stamps) {
   std::vector<Stamp> periods;
   for (std::size_t i = 1; i < stamps.size(); ++i) periods.push_back(stamps[i] - stamps[i - 1]);
   return periods.empty() ? Stamp{} : median_of(std::move(periods));
+}
+
+bool is_impossible(double step, Stamp time) {
+  constexpr double kFastest = 5.0;  // rad/s or m/s: beyond the joints of robots with cameras
+  constexpr double kFar = 0.05;     // radians or metres: beyond noise
+  const double seconds = std::abs(std::chrono::duration<double>(time).count());
+  return std::abs(step) > std::max(kFar, kFastest * seconds);
+}
+
+namespace {
+
+/// The joint that goes away and back in the middle one of three messages.
+/// @param restless  joints that may
+[[nodiscard]] std::optional<JointJump> jump_at(const JointReading& before, const JointReading& at,
+                                               const JointReading& after,
+                                               const std::vector<bool>& restless) {
+  for (std::size_t j = 0; j < at.positions.size(); ++j) {
+    if (restless[j]) continue;
+    const double away = unwrapped_step(before.positions[j], at.positions[j]);
+    const double back = unwrapped_step(at.positions[j], after.positions[j]);
+    const double least = std::min(std::abs(away), std::abs(back));
+    if (away * back >= 0.0 || std::abs(away + back) > 0.5 * least) continue;
+    if (!is_impossible(2.0 * least, after.stamp - before.stamp)) continue;
+    return JointJump{j, before.positions[j], at.positions[j]};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void JointTrack::add(JointReading reading) {
+  ++messages;
+  if (last_) {
+    const auto found = taken_ ? jump_at(*taken_, *last_, reading, restless) : std::nullopt;
+    if (found) {
+      ++jumps;
+      if (!jump) jump = found;
+    } else {
+      take(*last_);
+      taken_ = std::move(last_);
+    }
+  }
+  last_ = std::move(reading);
+}
+
+void JointTrack::take(const JointReading& reading) {
+  constexpr std::chrono::milliseconds kBin{10};
+  constexpr std::chrono::seconds kBack{1};
+  const Stamp stamp = reading.stamp;
+  const bool first = stamps.empty();
+  if (!first && stamp < newest - kBack && !back) back = Standstill{stamp, newest};
+  newest = first ? stamp : std::max(newest, stamp);
+  if (first || stamp < bin || stamp >= bin + kBin) {
+    stamps.push_back(stamp);
+    rows.push_back(reading.positions);
+    bin = stamp;
+    readings = 1;
+    return;
+  }
+  ++readings;
+  stamps.back() += (stamp - stamps.back()) / readings;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    rows.back()[i] += unwrapped_step(rows.back()[i], reading.positions[i]) / readings;
+  }
+}
+
+void JointTrack::finish() {
+  if (last_) take(*last_);
+  last_ = taken_ = std::nullopt;
+  if (!std::is_sorted(stamps.begin(), stamps.end())) {
+    std::vector<std::size_t> order(stamps.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return stamps[a] < stamps[b]; });
+    JointTrack sorted = *this;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      sorted.stamps[i] = stamps[order[i]];
+      sorted.rows[i] = rows[order[i]];
+    }
+    *this = std::move(sorted);
+  }
+  leave_out_first_zeros();
+  noise.clear();
+  for (std::size_t j = 0; j < names.size(); ++j) noise.push_back(noise_at_rest(j));
+}
+
+void JointTrack::leave_out_first_zeros() {
+  const auto real = std::find_if(rows.begin(), rows.end(), [](const std::vector<double>& row) {
+    return std::any_of(row.begin(), row.end(), [](double q) { return q != 0.0; });
+  });
+  if (real == rows.begin() || real == rows.end()) return;
+  std::vector<std::size_t> impossible;  // rows to which joints jump
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      const double step = unwrapped_step(rows[i - 1][j], rows[i][j]);
+      if (!is_impossible(step, stamps[i] - stamps[i - 1])) continue;
+      impossible.push_back(i);
+      break;
+    }
+  }
+  zeros = static_cast<std::size_t>(real - rows.begin());
+  if (impossible != std::vector{zeros}) {  // a simulation jumps each time
+    zeros = 0;
+    return;
+  }
+  rows.erase(rows.begin(), real);
+  stamps.erase(stamps.begin(), stamps.begin() + static_cast<std::ptrdiff_t>(zeros));
+}
+
+/// By pieces of eight readings in which the joint hardly moves: that of the noisiest fifth, because
+/// readings that are rounded flicker only where the joint is between two counts.
+double JointTrack::noise_at_rest(std::size_t joint) const {
+  constexpr std::size_t kPiece = 8;
+  constexpr double kMoved = 0.03, kShare = 0.8;  // radians or metres
+  const Stamp longest = 2 * kPiece * usual_period(stamps);
+  std::vector<double> noises;
+  for (std::size_t first = 0; first + kPiece <= rows.size(); first += kPiece / 2) {
+    if (stamps[first + kPiece - 1] - stamps[first] > longest) continue;
+    std::vector<double> piece = {rows[first][joint]};
+    for (std::size_t i = first + 1; i < first + kPiece; ++i) {
+      piece.push_back(piece.back() + unwrapped_step(rows[i - 1][joint], rows[i][joint]));
+    }
+    if (std::abs(piece.back() - piece.front()) < kMoved) noises.push_back(reading_noise(piece));
+  }
+  if (noises.empty()) return 0.0;
+  const auto at =
+      noises.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(noises.size() - 1));
+  std::nth_element(noises.begin(), at, noises.end());
+  return *at;
+}
+
+double JointTrack::mean(std::size_t joint, std::size_t first, std::size_t last) const {
+  const double start = rows[first][joint];
+  double sum = 0.0;
+  for (std::size_t i = first; i < last; ++i) sum += unwrapped_step(start, rows[i][joint]);
+  return start + sum / static_cast<double>(last - first);
 }
 
 std::vector<Standstill> JointTrack::rests(const std::vector<std::size_t>& joints,
@@ -68,13 +166,15 @@ std::vector<Standstill> JointTrack::rests(const std::vector<std::size_t>& joints
   MeasuredJoints reading;
   for (const std::size_t j : joints) reading.names.push_back(names[j]);
   reading.positions.resize(joints.size());
-  JointRest rest(own);
+  std::vector<double> own_noise;
+  for (const std::size_t j : joints) own_noise.push_back(noise[j]);
+  JointRest rest(own, own_noise);
   std::vector<Standstill> found;
   Stamp begin{};  // of readings without a gap
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     if (i > 0 && stamps[i] <= stamps[i - 1]) continue;
     if (i == 0 || stamps[i] - stamps[i - 1] > gap) {
-      rest = JointRest(own);
+      rest = JointRest(own, own_noise);
       begin = stamps[i];
     }
     reading.stamp = stamps[i];

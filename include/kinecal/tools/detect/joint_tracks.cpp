@@ -6,12 +6,15 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "kinecal/files/diagnostics.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/tools/detect/joint_motion.hpp"
@@ -48,6 +51,56 @@ void check_stamps(const JointTrack& track, const Standstill& all, bool in_motion
                      (in_motion ? ", and only then are views used; choose topics with --joints"
                                 : ", and only then is it known that they stand still; name those "
                                   "that need not with --restless"));
+}
+
+constexpr const char* kTwoNodes =
+    ": two nodes publish it; record that of the robot's driver alone, or on a topic of its own";
+
+/// Messages that joints cannot have been in: an error if there are many, else a warning.
+void check_jumps(const JointTrack& track, const std::string& file, Diagnostics& diagnostics) {
+  const std::string about = "topic '" + printable(track.topic) + "': ";
+  if (track.zeros > 0) {
+    diagnostics.warning({file, 0}, about + "joints " + listed(track.names) +
+                                       " are zero in the first " + counted(track.zeros, "message") +
+                                       ", and jump from there: left out");
+  }
+  if (!track.jump) return;
+  constexpr double kNoise = 8.0;  // standard deviations: what is less are readings that scatter
+  const auto [joint, from, to] = *track.jump;
+  if (std::abs(to - from) < kNoise * track.noise[joint]) return;
+  std::ostringstream text;
+  text << about << "joint '" << printable(track.names[joint]) << "' jumps from " << from << " to "
+       << to << " and back; so in " << track.jumps << " of " << counted(track.messages, "message");
+  constexpr double kRare = 0.02;  // share of the messages
+  if (static_cast<double>(track.jumps) <= kRare * static_cast<double>(track.messages)) {
+    diagnostics.warning({file, 0}, text.str() + ", which are left out");
+  } else {
+    diagnostics.error({file, 0}, text.str() + kTwoNodes);
+  }
+}
+
+/// Where two lists of joints have a joint at different places at the same time; nullopt if they
+/// agree.
+/// @param joint_a, joint_b  its index in each
+[[nodiscard]] std::optional<std::pair<double, double>> apart(const JointTrack& a,
+                                                             std::size_t joint_a,
+                                                             const JointTrack& b,
+                                                             std::size_t joint_b) {
+  constexpr std::chrono::milliseconds kNear{50};
+  constexpr std::size_t kFewest = 4;
+  std::optional<std::pair<double, double>> first;
+  std::size_t compared = 0, differ = 0;
+  for (std::size_t i = 0; i < a.stamps.size(); ++i) {
+    const auto [at, end] = b.near(a.stamps[i], {a.stamps[i], a.stamps[i]});
+    const Stamp time = std::chrono::abs(b.stamps[at] - a.stamps[i]);
+    if (time > kNear) continue;
+    ++compared;
+    if (!is_impossible(unwrapped_step(a.rows[i][joint_a], b.rows[at][joint_b]), time)) continue;
+    ++differ;
+    if (!first) first = {a.rows[i][joint_a], b.rows[at][joint_b]};
+  }
+  constexpr std::size_t kRare = 10;  // one of them
+  return differ >= kFewest && kRare * differ > compared ? first : std::nullopt;
 }
 
 }  // namespace
@@ -112,6 +165,27 @@ inline void JointTracks::settle_conflicts(const std::string& file, Diagnostics& 
   }
 }
 
+inline void JointTracks::find_second_nodes(const std::string& file,
+                                           Diagnostics& diagnostics) const {
+  std::map<std::pair<std::string, std::string>, std::pair<const detail::JointTrack*, std::size_t>>
+      known;
+  for (const detail::JointTrack& track : tracks_) {
+    detail::check_jumps(track, file, diagnostics);
+    for (std::size_t j = 0; j < track.names.size(); ++j) {
+      const auto [other, is_new] = known.try_emplace({track.topic, track.names[j]}, &track, j);
+      if (is_new || !track.used[j] || track.restless[j]) continue;
+      const auto places = detail::apart(*other->second.first, other->second.second, track, j);
+      if (!places) continue;
+      std::ostringstream text;
+      text << "topic '" << printable(track.topic) << "': joint '" << printable(track.names[j])
+           << "' is in two lists of joints, at " << places->first << " and " << places->second
+           << " at the same time" << detail::kTwoNodes;
+      diagnostics.error({file, 0}, text.str());
+      return;
+    }
+  }
+}
+
 void JointTracks::add(const std::string& topic, const MeasuredJoints& reading) {
   std::map<std::string, double> sorted;
   bool is_whole = true;
@@ -136,10 +210,13 @@ void JointTracks::add(const std::string& topic, const MeasuredJoints& reading) {
     return t.topic == topic && t.names == names;
   });
   if (track == tracks_.end()) {
-    track = tracks_.insert(tracks_.end(), detail::JointTrack{topic, names});
+    track = tracks_.emplace(tracks_.end());
+    track->topic = topic;
+    track->names = names;
     track->used.assign(names.size(), true);
+    for (const std::string& name : names) track->restless.push_back(restless_.contains(name));
   }
-  track->add(reading.stamp, positions);
+  track->add({reading.stamp, std::move(positions)});
 }
 
 bool JointTracks::measures(const std::string& topic, const std::string& joint) const {
@@ -153,6 +230,7 @@ void JointTracks::choose(const std::vector<std::string>& topics, const std::stri
                          Diagnostics& diagnostics, bool in_motion) {
   choose_topics(topics, file, diagnostics);
   settle_conflicts(file, diagnostics);
+  for (detail::JointTrack& track : tracks_) track.finish();
   constexpr std::size_t kFewest = 4;
   std::erase_if(tracks_, [&](const detail::JointTrack& track) {
     if (track.stamps.size() >= kFewest) return false;
@@ -162,10 +240,10 @@ void JointTracks::choose(const std::vector<std::string>& topics, const std::stri
     return true;
   });
   const std::optional<Standstill> all = span();
-  for (detail::JointTrack& track : tracks_) {
+  for (const detail::JointTrack& track : tracks_) {
     detail::check_stamps(track, *all, in_motion, file, diagnostics);
-    track.sort();
   }
+  find_second_nodes(file, diagnostics);
 }
 
 std::vector<Standstill> JointTracks::standstills(const std::set<std::string>& restless,
@@ -196,6 +274,16 @@ std::vector<std::string> JointTracks::never_still(const SettleOptions& options) 
   return result;
 }
 
+double JointTracks::noise(const std::string& joint) const {
+  double most = 0.0;
+  for (const detail::JointTrack& track : tracks_) {
+    for (std::size_t i = 0; i < track.names.size(); ++i) {
+      if (track.used[i] && track.names[i] == joint) most = std::max(most, track.noise[i]);
+    }
+  }
+  return most;
+}
+
 std::set<std::string> JointTracks::names() const {
   std::set<std::string> all;
   for (const detail::JointTrack& track : tracks_)
@@ -204,18 +292,20 @@ std::set<std::string> JointTracks::names() const {
 }
 
 MeasuredJoints JointTracks::positions(Stamp stamp, const Standstill& during) const {
-  constexpr std::chrono::milliseconds kNear{150};
+  constexpr std::chrono::milliseconds kUsual{150}, kNoisy{500};
+  const double noisy = SettleOptions{}.still;
   MeasuredJoints joints;
   joints.stamp = stamp;
   for (const detail::JointTrack& track : tracks_) {
+    const bool is_noisy = std::any_of(track.noise.begin(), track.noise.end(),
+                                      [&](double noise) { return noise > noisy; });
+    const Stamp away = is_noisy ? kNoisy : kUsual;
     const auto [first, last] = track.near(
-        stamp, {std::max(during.begin, stamp - kNear), std::min(during.end, stamp + kNear)});
+        stamp, {std::max(during.begin, stamp - away), std::min(during.end, stamp + away)});
     for (std::size_t j = 0; j < track.names.size(); ++j) {
       if (!track.used[j] || joints.position(track.names[j])) continue;
-      double mean = 0.0;
-      for (std::size_t i = first; i < last; ++i) mean += track.rows[i][j];
       joints.names.push_back(track.names[j]);
-      joints.positions.push_back(mean / static_cast<double>(last - first));
+      joints.positions.push_back(track.mean(j, first, last));
     }
   }
   return joints;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kinecal/capture/session/settling.hpp"
@@ -26,6 +27,10 @@ struct JointsInMotion {
 /// The joints of a recording.
 class JointTracks {
  public:
+  /// No joints.
+  /// @param restless  joints that may do anything
+  explicit JointTracks(std::set<std::string> restless = {}) : restless_(std::move(restless)) {}
+
   /// Adds a message of joint states.  Ignores one without positions.
   /// @param topic  of the message
   void add(const std::string& topic, const MeasuredJoints& reading);
@@ -35,7 +40,8 @@ class JointTracks {
   /// @param topics  to use; empty: all
   /// @param file    name of the recording in messages
   /// @param diagnostics  receives: no positions, a missing topic of `topics`, a joint on two
-  ///                     topics, stamps that go back, joints with only a few measurements
+  ///                     topics, or of two nodes on one, stamps that go back, joints with only a
+  ///                     few measurements
   /// @param in_motion    whether views are taken while the robot moves, for messages
   void choose(const std::vector<std::string>& topics, const std::string& file,
               Diagnostics& diagnostics, bool in_motion = false);
@@ -45,13 +51,17 @@ class JointTracks {
   [[nodiscard]] std::vector<Standstill> standstills(const std::set<std::string>& restless = {},
                                                     const SettleOptions& options = {}) const;
 
+  /// Noise of a joint's readings at rest, radians or metres; 0 if it never rests.
+  [[nodiscard]] double noise(const std::string& joint) const;
+
   /// Joints that never stand still, whatever the others do.
   [[nodiscard]] std::vector<std::string> never_still(const SettleOptions& options = {}) const;
 
   /// All measured joints.
   [[nodiscard]] std::set<std::string> names() const;
 
-  /// Mean positions of all joints near a moment of a standstill.
+  /// Mean positions of all joints near a moment of a standstill: within 150 ms, or 500 ms for noisy
+  /// joints.
   [[nodiscard]] MeasuredJoints positions(Stamp stamp, const Standstill& during) const;
 
   /// Positions and velocities of all joints at a moment, by a parabola through the readings within
@@ -62,10 +72,12 @@ class JointTracks {
   [[nodiscard]] std::optional<Standstill> span() const;
 
  private:
+  std::set<std::string> restless_;
   [[nodiscard]] bool measures(const std::string& topic, const std::string& joint) const;
   void choose_topics(const std::vector<std::string>& topics, const std::string& file,
                      Diagnostics& diagnostics);
   void settle_conflicts(const std::string& file, Diagnostics& diagnostics);
+  void find_second_nodes(const std::string& file, Diagnostics& diagnostics) const;
   std::vector<detail::JointTrack> tracks_;
   /// Messages in which a joint's position is not a number, by topic and joint.
   std::map<std::pair<std::string, std::string>, int> not_finite_;

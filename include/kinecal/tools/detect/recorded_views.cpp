@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -87,12 +88,13 @@ struct RecordedSurvey {
     std::size_t messages = 0, damaged = 0;  ///< their numbers
     std::size_t unstamped = 0;              ///< messages without a stamp
     std::string damage = {};                ///< of the first one
+    std::string frame = {};                 ///< of the first one that names it
     std::optional<CameraInfo> camera = {};  ///< the first one
     std::string image_part = {};            ///< the doubt about a partial image
     bool camera_changes = false;
   };
   std::map<std::string, Topic> topics = {};  ///< by name
-  JointTracks joints = {};
+  JointTracks joints{};
   std::vector<std::int64_t> joints_ahead = {};  ///< as ViewStamp::ahead
 
   static bool wants(const BagTopic& topic) {
@@ -111,6 +113,7 @@ struct RecordedSurvey {
       const auto form = forms.of(message.topic);
       const MessageFields content = decode(form->definition, form->encoding, message.data);
       if (header_stamp(content) == Stamp{}) ++topic.unstamped;
+      if (topic.frame.empty()) topic.frame = plain_frame(text_at(content, "header.frame_id"));
       const Stamp stamp = stamp_of(content, message.time);
       take(topic, message.topic.type, content, {stamp, message.time - stamp.count(), index});
     } catch (const std::runtime_error& error) {  // bytes or definition
@@ -422,10 +425,79 @@ void report_messages(const RecordedSurvey& survey, const std::vector<ViewTopics>
   }
 }
 
+/// The camera_info of a topic's own camera; nullptr if it was not recorded.
+[[nodiscard]] const CameraInfo* own_camera(const RecordedSurvey& survey, const std::string& topic) {
+  const auto found = survey.topics.find(camera_info_beside(topic));
+  return found != survey.topics.end() && found->second.camera ? &*found->second.camera : nullptr;
+}
+
+/// How the camera of depth differs from that of the image, as text; empty if it does not.
+[[nodiscard]] std::string differing_settings(const CameraInfo& depth, const CameraInfo& image) {
+  constexpr double kSame = 0.02;  // share of the focal length, or of the width
+  const auto focal = [](const CameraInfo& c) { return c.k[0] > 0.0 ? c.k[0] : c.p[0]; };
+  const auto middle = [](const CameraInfo& c) { return c.k[0] > 0.0 ? c.k[2] : c.p[2]; };
+  std::ostringstream text;
+  if (depth.width != image.width || depth.height != image.height) {
+    text << ", images of " << depth.width << " x " << depth.height << " pixels instead of "
+         << image.width << " x " << image.height;
+  }
+  if (std::abs(focal(depth) - focal(image)) > kSame * focal(image)) {
+    text << ", focal length " << focal(depth) << " px instead of " << focal(image) << " px";
+  } else if (std::abs(middle(depth) - middle(image)) > kSame * image.width) {
+    text << ", cx " << middle(depth) << " px instead of " << middle(image) << " px";
+  }
+  return text.str();
+}
+
+/// An error if the depth beside an image is of another camera: a corner of the image is at another
+/// pixel there.
+void check_registered(const RecordedSurvey& survey, const std::vector<ViewTopics>& cameras,
+                      const RecordingOptions& options, Diagnostics& diagnostics) {
+  for (const ViewTopics& camera : cameras) {
+    if (camera.image.empty() || camera.depth.empty()) continue;
+    const std::string &depth = survey.topics.at(camera.depth).frame,
+                      &image = survey.topics.at(camera.image).frame;
+    std::string differs, remedy;
+    if (options.frame.empty() && !depth.empty() && !image.empty() && !same_frame(depth, image)) {
+      differs = ", frame '" + printable(depth) + "' instead of '" + printable(image) + "'";
+      remedy = "; if both are of one camera, name its frame with --frame";
+    }
+    const CameraInfo* of_depth = own_camera(survey, camera.depth);
+    const CameraInfo* of_image = own_camera(survey, camera.image);
+    if (options.camera) of_image = &*options.camera;
+    if (of_depth != nullptr && of_image != nullptr) {
+      const std::string settings = differing_settings(*of_depth, *of_image);
+      if (!settings.empty()) remedy.clear();
+      differs += settings;
+    }
+    if (differs.empty()) continue;
+    diagnostics.error({options.path, 0},
+                      "topic '" + printable(camera.depth) +
+                          "': its depth is not registered to the image of topic '" +
+                          printable(camera.image) +
+                          "' but of another camera: " + differs.substr(2) +
+                          "; record aligned depth (realsense2_camera: align_depth.enable; "
+                          "depth_image_proc: register), or use a finder of pixels (2d)" +
+                          remedy);
+  }
+}
+
+/// Whether stamps of a camera and of joints are of different clocks.  A message may be recorded late,
+/// but not before its stamp: what is ahead of its recording, and of the other stamps, is of another
+/// clock.
+/// @param camera, joints  time of recording minus stamp
+[[nodiscard]] bool clocks_differ(Stamp camera, Stamp joints) {
+  constexpr std::chrono::milliseconds kAhead{20};  // jitter, and stamps in the middle of exposures
+  constexpr std::chrono::milliseconds kLatency{200};  // of images behind joints, usual
+  constexpr std::chrono::seconds kLate{1};            // beyond any latency
+  if (std::chrono::abs(camera - joints) > kLate) return true;
+  if (camera < joints) return camera < -kAhead && joints - camera > kAhead;
+  return joints < -kAhead && camera - joints > kLatency;
+}
+
 /// An error if camera and joints never overlap in time; a doubt if their clocks seem to differ.
 void check_clocks(const RecordedSurvey& survey, const std::vector<ViewTopics>& cameras,
                   const std::string& file, Diagnostics& diagnostics) {
-  constexpr std::chrono::seconds kSameClock{1};
   const auto joints = survey.joints.span();
   for (const ViewTopics& camera : cameras) {
     const std::string name = parts_of(camera).front();
@@ -445,8 +517,9 @@ void check_clocks(const RecordedSurvey& survey, const std::vector<ViewTopics>& c
     }
     std::vector<std::int64_t> ahead;
     for (const ViewStamp& view : views) ahead.push_back(view.ahead);
-    const Stamp apart(median_of(ahead) - median_of(survey.joints_ahead));
-    if (std::chrono::abs(apart) <= kSameClock) continue;
+    const Stamp late(median_of(ahead)), joints_late(median_of(survey.joints_ahead));
+    const Stamp apart = late - joints_late;
+    if (!clocks_differ(late, joints_late)) continue;
     diagnostics.doubt({file, 0}, "topic '" + printable(name) + "': its stamps are " +
                                      stamp_text(std::chrono::abs(apart)) +
                                      (apart > Stamp{} ? " behind" : " ahead of") +
@@ -472,7 +545,18 @@ void check_clocks(const RecordedSurvey& survey, const std::vector<ViewTopics>& c
   std::vector<std::string> moving = survey.joints.never_still(options.settle);
   std::erase_if(moving,
                 [&](const std::string& joint) { return options.restless.count(joint) > 0; });
-  if (moving.empty() || moving.size() + options.restless.size() == names.size()) {
+  std::vector<std::string> noisy = moving;
+  std::erase_if(noisy, [&](const std::string& joint) {
+    return survey.joints.noise(joint) <= options.settle.most_noise;
+  });
+  if (!noisy.empty()) {
+    std::ostringstream noise;
+    noise.precision(2);
+    noise << survey.joints.noise(noisy.front());
+    text += ": readings of joints " + listed(noisy) +
+            " scatter even at rest, those of the first by " + noise.str() +
+            " (radians or metres); mend them, or name them with --restless";
+  } else if (moving.empty() || moving.size() + options.restless.size() == names.size()) {
     text += "; let it rest for a second in each pose";
   } else {
     text += ": joints " + listed(moving) +
@@ -554,6 +638,7 @@ class StandstillReader {
 RecordedViews::RecordedViews(RecordingOptions options, const std::vector<CaptureFinder>& finders,
                              Diagnostics& diagnostics, const ProgressMeter& meter)
     : options_(std::move(options)), survey_(std::make_unique<detail::RecordedSurvey>()) {
+  survey_->joints = JointTracks(options_.restless);
   detail::MessageForms forms;
   const auto handle = [&](const BagMessage& message) { survey_->add(message, forms); };
   Diagnostics own;
@@ -564,6 +649,7 @@ RecordedViews::RecordedViews(RecordingOptions options, const std::vector<Capture
     choose_cameras(finders, own);
     detail::report_messages(*survey_, cameras_, options_.path, own);
   }
+  if (own.errors.empty()) detail::check_registered(*survey_, cameras_, options_, own);
   if (own.errors.empty()) detail::check_clocks(*survey_, cameras_, options_.path, own);
   if (own.errors.empty()) {
     times_ = in_motion() ? detail::find_intervals(*survey_, cameras_, options_, own)

@@ -30,7 +30,10 @@ enum class TopicKind { image, depth, cloud, camera_info, other };
   if (topic.type != "sensor_msgs/Image" && topic.type != "sensor_msgs/CompressedImage") {
     return TopicKind::other;
   }
-  return is_depth(topic.encoding) ? TopicKind::depth : TopicKind::image;
+  // Of 16-bit gray, the name says whether it is depth or infrared.
+  const bool is_named_so =
+      topic.encoding.starts_with("mono16") && topic.name.find("depth") != std::string::npos;
+  return is_depth(topic.encoding) || is_named_so ? TopicKind::depth : TopicKind::image;
 }
 
 /// Chooses the topics of one finder.
@@ -76,7 +79,7 @@ class TopicChoice {
       topics.depth = depth_topic(*main);
       if (topics.depth.empty()) return {};
     }
-    if (!wishes_.has_camera) topics.camera_info = camera_info(raw_topic(main->name));
+    if (!wishes_.has_camera) topics.camera_info = camera_info(main->name);
     return topics;
   }
 
@@ -157,8 +160,7 @@ class TopicChoice {
   }
 
   [[nodiscard]] std::string camera_info(const std::string& topic) {
-    const std::string beside = topic.substr(0, topic.find_last_of('/') + 1) + "camera_info";
-    for (const std::string& name : {finder_.camera_info, beside}) {
+    for (const std::string& name : {finder_.camera_info, camera_info_beside(topic)}) {
       const RecordedTopic* found = find(name);
       if (found != nullptr && kind_of(*found) == TopicKind::camera_info) return found->name;
     }
@@ -180,6 +182,11 @@ class TopicChoice {
 
 }  // namespace
 }  // namespace detail
+
+std::string camera_info_beside(const std::string& topic) {
+  const std::string raw = detail::raw_topic(topic);
+  return raw.substr(0, raw.find_last_of('/') + 1) + "camera_info";
+}
 
 std::vector<ViewTopics> choose_topics(const std::vector<RecordedTopic>& recorded,
                                       const std::vector<CaptureFinder>& finders,

@@ -38,6 +38,9 @@ struct ViewWishes {
   bool has_camera = false;  ///< the user gave the camera's settings: no topic is needed
 };
 
+/// The usual topic of the camera_info of images: "camera/camera_info" for "camera/image/compressed".
+[[nodiscard]] std::string camera_info_beside(const std::string& topic);
+
 /// The topics of each finder; empty, with an error, if a finder has no topic.
 /// @param diagnostics  receives errors, and notes about unnamed topics that were chosen
 [[nodiscard]] std::vector<ViewTopics> choose_topics(const std::vector<RecordedTopic>& recorded,

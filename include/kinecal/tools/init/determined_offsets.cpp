@@ -330,7 +330,8 @@ OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
     const Eigen::VectorXd column = detail::derivative([&](double number) {
       return poses.measured({{joint, number}}, {});
     });
-    constexpr double kNothing = 1e-9;  // metres per radian: rounding of differences
+    // Metres per radian: differences of poses that odometry puts far away are rounded.
+    constexpr double kNothing = 1e-6;
     effect.is_seen = column.size() > 0 && column.lpNorm<Eigen::Infinity>() > kNothing;
     effect.determined = effect.is_seen && span.add(column);
     if (effect.determined || !effect.is_seen) continue;

@@ -110,12 +110,21 @@ class Branches {
   }
 }
 
-/// True if a wheel or a caster is on the path to a link.
-[[nodiscard]] bool is_on_a_wheel(const Robot& robot, const std::string& link) {
+/// True if a moving joint on the path to a link is called one of these words.
+[[nodiscard]] bool is_on(const Robot& robot, const std::string& link,
+                         std::initializer_list<const char*> words) {
   const std::vector<const Joint*> way = joints_to_root(robot, link);
-  return std::any_of(way.begin(), way.end(), [](const Joint* joint) {
-    return moves(joint->type) && is_called(*joint, {"wheel", "caster"});
+  return std::any_of(way.begin(), way.end(), [&](const Joint* joint) {
+    return moves(joint->type) && is_called(*joint, words);
   });
+}
+
+[[nodiscard]] bool is_on_a_wheel(const Robot& robot, const std::string& link) {
+  return is_on(robot, link, {"wheel", "caster"});
+}
+
+[[nodiscard]] bool is_on_a_leg(const Robot& robot, const std::string& link) {
+  return is_on(robot, link, {"leg", "hip", "thigh", "knee", "calf", "ankle"});
 }
 
 }  // namespace
@@ -137,6 +146,8 @@ std::vector<std::string> propose_arms(const Robot& robot) {
   }
   std::stable_sort(ends.begin(), ends.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
+  const auto is_leg = [&](const auto& end) { return detail::is_on_a_leg(robot, end.second); };
+  if (!std::all_of(ends.begin(), ends.end(), is_leg)) std::erase_if(ends, is_leg);
   std::vector<std::string> names;
   for (auto& [own, name] : ends) names.push_back(std::move(name));
   return names;

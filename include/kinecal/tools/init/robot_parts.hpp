@@ -12,7 +12,7 @@
 namespace kinecal {
 
 /// Links at the ends of chains with at least three moving joints of their own; longest chains
-/// first.
+/// first.  Legs only if there is nothing else.
 [[nodiscard]] std::vector<std::string> propose_arms(const Robot& robot);
 
 /// Links with "optical" in their names, colour before depth; then other links that look like

@@ -75,6 +75,9 @@ inline void set_middle(SimulatedTarget& target, const Pose<double>& link_T_middl
   return points;
 }
 
+/// Links may be a little below the floor, metres.
+inline constexpr double kBelowFloor = 0.01;
+
 /// The goal of a view of a target.
 inline void set_goal(SimulationPlan& plan) {
   const SimulatedTarget& target = plan.target;
@@ -95,7 +98,7 @@ inline void set_goal(SimulationPlan& plan) {
   goal.least_size = is_board(target) ? kBoard : kLeds;
   if (target.type == "ground") goal.most_angle = 70.0 * std::numbers::pi / 180.0;
   goal.margin = 0.12;  // the true robot points elsewhere than its URDF
-  goal.ground = -0.01;
+  goal.ground = floor_height(plan.setup.robot, goal) - kBelowFloor;
 }
 
 /// Length of the way to a link, metres.
@@ -139,9 +142,15 @@ inline void place_target(SimulationPlan& plan) {
   constexpr int kTrial = 3;
   std::string why;
   for (const Pose<double>& place : usual_places(plan.setup.robot, plan)) {
-    set_middle(plan.target, place);
-    set_goal(plan);
     try {
+      set_middle(plan.target, place);
+      set_goal(plan);
+      if (plan.target.type == "ground") {
+        set_middle(plan.target, Pose<double>{Matrix3<double>::Identity(),
+                                             {0.0, 0.0, plan.goal.ground + kBelowFloor}} *
+                                    place);
+        set_goal(plan);
+      }
       if (poses_with_view_of(plan.setup.robot, plan.goal, kTrial).size() == kTrial) return;
       why = "few poses in which '" + plan.goal.camera + "' sees the target on '" +
             plan.goal.target + "'";
@@ -159,7 +168,7 @@ inline void furnish(SimulationPlan& plan) {
   SimulatedTarget& target = plan.target;
   Scene& scene = plan.setup.scene;
   constexpr double kInfinite = std::numeric_limits<double>::infinity(), kWall = 4.0;  // metres
-  add_ground(scene);
+  add_ground(scene, plan.goal.ground + kBelowFloor);
   scene.patches.push_back({.pose = facing({kWall, 0.0, 0.0}, {-1.0, 0.0, 0.0}),
                            .width = kInfinite,
                            .height = kInfinite,

@@ -1,0 +1,232 @@
+// Humanoids, a quadruped and mobile manipulators: init, simulate, plan, detect and calibrate.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/run_program.hpp"
+
+namespace kinecal {
+namespace {
+
+using test::Outcome;
+using testing::HasSubstr;
+
+/// Lines of a robot, one a joint:
+///   name type parent child, x y z, roll pitch yaw, x y z of the axis, limits, mimic JOINT MULTIPLIER
+std::string urdf_of(const std::string& name, const std::string& lines) {
+  std::ostringstream urdf;
+  std::vector<std::string> links;
+  urdf << "<robot name=\"" << name << "\">\n";
+  std::istringstream all(lines);
+  for (std::string line; std::getline(all, line);) {
+    std::istringstream words(line);
+    std::string joint, type, parent, child, xyz, rpy, axis, limits, mimic;
+    words >> joint >> type >> parent >> child;
+    const auto numbers = [&](int count) {
+      std::string text, word;
+      for (int i = 0; i < count && words >> word; ++i) text += (i > 0 ? " " : "") + word;
+      return text;
+    };
+    xyz = numbers(3);
+    rpy = numbers(3);
+    axis = numbers(3);
+    if (type != "continuous" && type != "fixed") {
+      const std::string lower = numbers(1), upper = numbers(1);
+      limits =
+          "<limit lower=\"" + lower + "\" upper=\"" + upper + "\" effort=\"9\" velocity=\"2\"/>";
+    }
+    if (std::string word; words >> word && word == "mimic") {
+      const std::string of = numbers(1), times = numbers(1);
+      mimic = "<mimic joint=\"" + of + "\" multiplier=\"" + times + "\"/>";
+    }
+    if (links.empty()) links.push_back(parent);
+    links.push_back(child);
+    urdf << "<joint name=\"" << joint << "\" type=\"" << type << "\"><parent link=\"" << parent
+         << "\"/><child link=\"" << child << "\"/><origin xyz=\"" << xyz << "\" rpy=\""
+         << (rpy.empty() ? "0 0 0" : rpy) << "\"/>"
+         << (axis.empty() ? "" : "<axis xyz=\"" + axis + "\"/>") << limits << mimic << "</joint>\n";
+  }
+  for (const std::string& link : links) urdf << "<link name=\"" << link << "\"/>\n";
+  urdf << "</robot>\n";
+  return urdf.str();
+}
+
+std::string camera_on(const std::string& link, const std::string& xyz) {
+  return "camera_joint fixed " + link + " camera_link " + xyz +
+         "\ncamera_optical_joint fixed camera_link camera_optical_frame 0 0 0 -1.5707963 0 "
+         "-1.5707963\n";
+}
+
+/// Joints of a leg that hangs below a link.
+std::string leg(const std::string& of, const std::string& parent, const std::string& at,
+                const std::string& thigh, const std::string& shin) {
+  return of + "_hip_yaw revolute " + parent + " " + of + "_hip " + at + " 0 0 0 0 0 1 -0.6 0.6\n" +
+         of + "_hip_roll revolute " + of + "_hip " + of + "_hip2 0 0 0 0 0 0 1 0 0 -0.4 0.4\n" +
+         of + "_hip_pitch revolute " + of + "_hip2 " + of + "_thigh 0 0 0 0 0 0 0 1 0 -1.5 0.5\n" +
+         of + "_knee revolute " + of + "_thigh " + of + "_shin 0 0 -" + thigh +
+         " 0 0 0 0 1 0 -0.1 2.1\n" + of + "_ankle revolute " + of + "_shin " + of + "_foot 0 0 -" +
+         shin + " 0 0 0 0 1 0 -1.1 0.9\n" + of + "_sole_joint fixed " + of + "_foot " + of +
+         "_sole 0 0 -0.05\n";
+}
+
+/// A tall humanoid: a waist, seven joints in each arm, the root is the pelvis.
+std::string tall_humanoid() {
+  std::string lines =
+      "torso_1 revolute base_link torso_1_link 0 0 0.07 0 0 0 0 0 1 -1.2 1.2\n"
+      "torso_2 revolute torso_1_link torso_2_link 0 0 0 0 0 0 0 1 0 -0.2 0.7\n"
+      "head_1 revolute torso_2_link head_1_link 0.02 0 0.32 0 0 0 0 1 0 -0.2 0.75\n"
+      "head_2 revolute head_1_link head_2_link 0 0 0 0 0 0 0 0 1 -1.3 1.3\n" +
+      camera_on("head_2_link", "0.08 0 0.12");
+  for (const std::string s : {"l", "r"}) {
+    const bool left = s == "l";
+    const auto joint = [&](int n, const std::string& rest) {
+      const std::string child = s + "_arm_" + std::to_string(n) + "_link";
+      const std::string parent =
+          n == 1 ? "torso_2_link" : s + "_arm_" + std::to_string(n - 1) + "_link";
+      lines +=
+          s + "_arm_" + std::to_string(n) + " revolute " + parent + " " + child + " " + rest + "\n";
+    };
+    joint(1, std::string("0 ") + (left ? "" : "-") + "0.16 0.23 0 0 0 0 0 1 -1.5 1.5");
+    joint(2, "0 0 0 0 0 0 1 0 0 -2.8 2.8");
+    joint(3, "0 0 0 0 0 0 0 0 1 -2.4 2.4");
+    joint(4, "0.02 0 -0.27 0 0 0 0 1 0 -2.2 0");
+    joint(5, "-0.02 0 -0.26 0 0 0 0 0 1 -2.5 2.5");
+    joint(6, "0 0 0 0 0 0 1 0 0 -1.3 1.3");
+    joint(7, "0 0 0 0 0 0 0 1 0 -0.6 0.6");
+    lines += s + "_gripper_joint fixed " + s + "_arm_7_link " + s + "_gripper 0 0 -0.1\n" +
+             leg(s, "base_link", left ? "0 0.085 -0.1" : "0 -0.085 -0.1", "0.38", "0.33");
+  }
+  return lines;
+}
+
+/// A mobile manipulator with casters, a lift, and an arm with two joints that turn without end.
+std::string manipulator_with_casters() {
+  std::string lines =
+      "footprint fixed base_footprint base_link 0 0 0.05\n"
+      "front_caster continuous base_link front_caster_link 0.22 0 0.03 0 0 0 0 0 1\n"
+      "front_wheel continuous front_caster_link front_wheel_link 0 0.05 0 0 0 0 0 1 0\n"
+      "torso_lift prismatic base_link torso -0.05 0 0.74 0 0 0 0 0 1 0.01 0.32\n"
+      "head_pan revolute torso pan_link -0.02 0 0.38 0 0 0 0 0 1 -2.9 2.9\n"
+      "head_tilt revolute pan_link tilt_link 0.07 0 0 0 0 0 0 1 0 -0.4 1.4\n" +
+      camera_on("tilt_link", "0.05 0 0.09");
+  return lines +
+         "shoulder_pan revolute torso shoulder 0 0.19 0 0 0 0 0 0 1 -0.6 2.2\n"
+         "shoulder_lift revolute shoulder lift_link 0.1 0 0 0 0 0 0 1 0 -0.5 1.3\n"
+         "upper_arm_roll revolute lift_link upper_arm 0 0 0 0 0 0 1 0 0 -0.7 3.8\n"
+         "elbow_flex revolute upper_arm elbow 0.4 0 0 0 0 0 0 1 0 -2.3 0\n"
+         "forearm_roll continuous elbow forearm 0 0 0 0 0 0 1 0 0\n"
+         "wrist_flex revolute forearm wrist 0.32 0 0 0 0 0 0 1 0 -2.1 0\n"
+         "wrist_roll continuous wrist palm 0 0 0 0 0 0 1 0 0\n"
+         "gripper_joint prismatic palm slider 0.08 0 0 0 0 0 0 1 0 0 0.09\n"
+         "tool_joint fixed palm tool 0.18 0 0\n";
+}
+
+/// A lift with a telescope on a mast.
+std::string telescope() {
+  std::string lines =
+      "left_wheel continuous base_link left_wheel_link 0 0.16 0.05 -1.57 0 0 0 0 1\n"
+      "mast_joint fixed base_link mast -0.07 0.13 0.03 1.5707963 0 0\n"
+      "lift prismatic mast lift_link -0.04 0.6 0 -1.5707963 1.5707963 0 0 0 1 0 1.1\n"
+      "arm_joint fixed lift_link arm_4 -0.25 0 0 1.5707963 0 -1.5707963\n";
+  for (int i = 3; i >= 0; --i) {
+    const std::string n = std::to_string(i), before = std::to_string(i + 1);
+    lines += "telescope_" + n + " prismatic arm_" + before + " arm_" + n +
+             " 0 0 0.013 0 0 0 0 0 1 0 0.13\n";
+  }
+  return lines +
+         "wrist_yaw revolute arm_0 wrist_1 0.08 -0.03 0 1.5707963 0 0 0 0 -1 -1.75 4\n"
+         "wrist_pitch revolute wrist_1 wrist_2 0 -0.02 0.02 1.5707963 0 0 0 0 1 -1.57 0.56\n"
+         "wrist_roll revolute wrist_2 wrist_3 -0.02 0 0.02 -1.5707963 0 -1.5707963 0 0 1 -3.1 3.1\n"
+         "gripper_joint fixed wrist_3 gripper 0 0 0.1\n"
+         "head_joint fixed mast head 0 1.33 0 -1.5707963 -1.5707963 0\n"
+         "head_pan revolute head pan_link 0 0.05 0 0 0 0 0 0 1 -3.9 1.5\n"
+         "head_tilt revolute pan_link tilt_link 0.03 -0.05 0.05 1.5707963 0 0 0 0 1 -1.53 0.79\n"
+         "camera_joint fixed tilt_link camera_link 0.03 0 0.02 1.5707963 0 0\n"
+         "camera_optical_joint fixed camera_link camera_optical_frame 0 0 0 -1.5707963 0 "
+         "-1.5707963\n";
+}
+
+/// A base with odometry, a lift that the head mimics, and an arm of four joints.
+std::string manipulator_with_odometry() {
+  return "odom_x prismatic odom slide_x 0 0 0 0 0 0 1 0 0 -10 10\n"
+         "odom_y prismatic slide_x slide_y 0 0 0 0 0 0 0 1 0 -10 10\n"
+         "odom_t continuous slide_y base_link 0 0 0 0 0 0 0 0 1\n"
+         "arm_lift prismatic base_link arm_lift_link 0.14 0 0.34 0 0 0 0 0 1 0 0.69\n"
+         "arm_flex revolute arm_lift_link arm_flex_link 0.005 0 0 0 0 0 0 -1 0 -2.6 0\n"
+         "arm_roll revolute arm_flex_link arm_roll_link 0 0 0.345 0 0 0 0 0 1 -2 3.8\n"
+         "wrist_flex revolute arm_roll_link wrist_flex_link 0 0 0.12 0 0 0 0 -1 0 -1.9 1.2\n"
+         "wrist_roll revolute wrist_flex_link wrist_roll_link 0 0 0 0 0 0 0 0 1 -1.9 3.6\n"
+         "palm_joint fixed wrist_roll_link palm 0.012 0 0.13\n"
+         "torso_lift prismatic base_link torso 0 0 0.75 0 0 0 0 0 1 0 0.34 mimic arm_lift 0.5\n"
+         "head_pan revolute torso pan_link 0.02 0 0.1 0 0 0 0 0 1 -3.8 1.7\n"
+         "head_tilt revolute pan_link tilt_link 0.02 0 0.06 0 0 0 0 -1 0 -1.5 0.5\n" +
+         camera_on("tilt_link", "0.07 0 0.09");
+}
+
+/// A quadruped whose arm has a camera in its hand.
+std::string quadruped_with_arm() {
+  return leg("left_front", "body", "0.3 0.11 0", "0.32", "0.34") +
+         leg("right_front", "body", "0.3 -0.11 0", "0.32", "0.34") +
+         leg("left_hind", "body", "-0.3 0.11 0", "0.32", "0.34") +
+         leg("right_hind", "body", "-0.3 -0.11 0", "0.32", "0.34") +
+         "arm_1 revolute body arm_1_link 0.29 0 0.19 0 0 0 0 0 1 -2.6 3.1\n"
+         "arm_2 revolute arm_1_link arm_2_link 0 0 0 0 0 0 0 1 0 -3.1 0.5\n"
+         "arm_3 revolute arm_2_link arm_3_link 0.34 0 0 0 0 0 0 1 0 0 3.1\n"
+         "arm_4 revolute arm_3_link arm_4_link 0.4 0 0.07 0 0 0 1 0 0 -2.8 2.8\n"
+         "arm_5 revolute arm_4_link arm_5_link 0 0 0 0 0 0 0 1 0 -1.8 1.8\n"
+         "arm_6 revolute arm_5_link hand 0.11 0 0 0 0 0 1 0 0 -2.9 2.9\n" +
+         camera_on("hand", "0.12 0 0.02");
+}
+
+struct Kind {
+  std::string name, lines, target, arm;  ///< target and arm of `init`; the arm is proposed first
+};
+
+class RobotsOfManyKinds : public test::ProgramTest, public testing::WithParamInterface<Kind> {};
+
+TEST_P(RobotsOfManyKinds, AreSimulatedPlannedAndCalibrated) {
+  const Kind kind = GetParam();
+  write("robot.urdf", urdf_of(kind.name, kind.lines));
+  const Outcome asked = kinecal("init --urdf robot.urdf --target " + kind.target);
+  EXPECT_NE(asked.code, 0);
+  if (kind.arm.empty()) {
+    EXPECT_THAT(asked.err, testing::Not(HasSubstr("_sole")));
+  } else {
+    EXPECT_THAT(asked.err, testing::AnyOf(HasSubstr("use one of " + kind.arm),
+                                          HasSubstr("--arm " + kind.arm + " (the only one)")));
+  }
+  const std::string arm = kind.arm.empty() ? "" : " --arm " + kind.arm;
+  const Outcome init = kinecal("init --urdf robot.urdf --camera camera_optical_frame --target " +
+                               kind.target + " --camera-type camera2d" + arm);
+  ASSERT_EQ(init.code, 0) << init.err;
+  const Outcome made = kinecal("simulate robot.urdf --target apriltag --poses 16 -o sim");
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Outcome plan =
+      kinecal("plan --urdf robot.urdf --target apriltag --candidates 12 -o p.yaml");
+  EXPECT_EQ(plan.code, 0) << plan.err;
+  const Outcome found = kinecal(
+      "detect sim/capture.yaml --images sim/images --poses sim/poses.csv --camera sim/camera.yaml "
+      "--frame camera_optical_frame -o samples.yaml");
+  ASSERT_EQ(found.code, 0) << found.err;
+  const Outcome fitted = kinecal(
+      "calibrate --urdf robot.urdf --config sim/calibrate.yaml --samples samples.yaml --output "
+      "out");
+  EXPECT_EQ(fitted.code, 0) << fitted.err << fitted.out;
+  EXPECT_THAT(fitted.out, testing::AnyOf(HasSubstr("good"), HasSubstr("use with care")));
+  EXPECT_THAT(fitted.out + fitted.err, testing::Not(HasSubstr("never moves")));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, RobotsOfManyKinds,
+    testing::Values(Kind{"TallHumanoid", tall_humanoid(), "apriltag", "l_gripper"},
+                    Kind{"Casters", manipulator_with_casters(), "apriltag", "palm"},
+                    Kind{"Telescope", telescope(), "apriltag", "gripper"},
+                    Kind{"Odometry", manipulator_with_odometry(), "apriltag", "palm"},
+                    Kind{"Quadruped", quadruped_with_arm(), "world_apriltag", ""}),
+    [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace kinecal
