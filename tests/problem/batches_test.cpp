@@ -123,8 +123,8 @@ TEST(Batches, HoldPrecisionsWhereFeaturesHaveSigmasAndConditions) {
   for (std::size_t n = 0; n < seen.size(); ++n) {
     const auto number = static_cast<double>(n);
     detail::SampleRow row = row_of(seen[n]);
-    row.add_term(3, {}, {20.0 + number});
-    row.add_term(5, {1.0, 2.0 + number}, {});
+    row.add_term(3, {}, {20.0 + number}, 0);
+    row.add_term(5, {1.0, 2.0 + number}, {}, 0);
     if (!batches) batches.emplace(row.layout);
     EXPECT_EQ(row.layout, batches->layout());
     batches->add(static_cast<int>(n), row.numbers);

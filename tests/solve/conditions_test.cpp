@@ -125,7 +125,8 @@ TYPED_TEST(Conditions, OfFeaturesAreTheirNormals) {
       const Pose<double> hand = test::tip_pose(problem, 0, "hand", sample, x);
       double turn = zero;
       for (Feature& feature : sample.observations[0].features) {
-        const Vector3<double> n = Vector3<double>(std::sin(turn += 1.0), std::cos(turn), 0.3);
+        turn += 1.0;
+        const Vector3<double> n(std::sin(turn), std::cos(turn), 0.3);
         feature.conditions = {
             {"nx", n.x()}, {"ny", n.y()}, {"nz", n.z()}, {"d", -n.dot(hand * feature.point)}};
       }

@@ -25,7 +25,7 @@
 
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/urdf_text.ipp"
-#include "kinecal/files/yaml/yaml_document.hpp"
+#include "kinecal/files/yaml/yaml_node.hpp"
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/text/characters.hpp"
@@ -303,9 +303,9 @@ void check_urdf_joints(const UrdfText& source) {
   const std::string_view before = std::string_view(text).substr(first, begin - first);
   if (before.find(':') != std::string_view::npos && !before.starts_with("String value is")) {
     try {
-      Diagnostics other_documents;
-      const YamlNode yaml = parse_config_text(text, "", other_documents);
-      if (const YamlNode* node = robot_scalar(yaml)) return node->text;
+      for (const YamlNode& document : parse_yaml(text, "")) {
+        if (const YamlNode* node = robot_scalar(document)) return node->text;
+      }
     } catch (const InputError&) {  // not YAML: words before the URDF
     }
   }

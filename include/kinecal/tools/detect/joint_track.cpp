@@ -31,8 +31,8 @@ namespace {
 
 /// The joint that goes away and back in the middle one of three messages.
 /// @param restless  joints that may
-[[nodiscard]] std::optional<JointJump> jump_at(const JointReading& before, const JointReading& at,
-                                               const JointReading& after,
+[[nodiscard]] std::optional<JointJump> jump_at(const JointMessage& before, const JointMessage& at,
+                                               const JointMessage& after,
                                                const std::vector<bool>& restless) {
   for (std::size_t j = 0; j < at.positions.size(); ++j) {
     if (restless[j]) continue;
@@ -48,7 +48,7 @@ namespace {
 
 }  // namespace
 
-void JointTrack::add(JointReading reading) {
+void JointTrack::add(JointMessage reading) {
   ++messages;
   if (last_) {
     const auto found = taken_ ? jump_at(*taken_, *last_, reading, restless) : std::nullopt;
@@ -63,7 +63,7 @@ void JointTrack::add(JointReading reading) {
   last_ = std::move(reading);
 }
 
-void JointTrack::take(const JointReading& reading) {
+void JointTrack::take(const JointMessage& reading) {
   constexpr std::chrono::milliseconds kBin{10};
   constexpr std::chrono::seconds kBack{1};
   const Stamp stamp = reading.stamp;

@@ -24,7 +24,7 @@ namespace detail {
 [[nodiscard]] bool is_impossible(double step, Stamp time);
 
 /// The positions in one message, in the order of the track's names.
-struct JointReading {
+struct JointMessage {
   Stamp stamp;
   std::vector<double> positions;  ///< radians or metres
 };
@@ -56,7 +56,7 @@ struct JointTrack {
   std::vector<double> noise = {};       ///< of each joint at rest, radians or metres
 
   /// Adds positions in the order of the names.
-  void add(JointReading reading);
+  void add(JointMessage reading);
 
   /// After the last message: sorts by stamps, and finds the noise.  Leaves out zeros of all joints
   /// before the first real reading, to which the joints jump.
@@ -76,10 +76,10 @@ struct JointTrack {
   [[nodiscard]] std::pair<std::size_t, std::size_t> near(Stamp stamp, const Standstill& time) const;
 
  private:
-  void take(const JointReading& reading);
+  void take(const JointMessage& reading);
   void leave_out_first_zeros();
   [[nodiscard]] double noise_at_rest(std::size_t joint) const;
-  std::optional<JointReading> taken_ = {}, last_ = {};  ///< the last but one is taken
+  std::optional<JointMessage> taken_ = {}, last_ = {};  ///< the last but one is taken
 };
 
 /// Periods common to both lists.
