@@ -169,7 +169,7 @@ TEST_P(HostileNames, AreNamesInEveryFile) {
                 .code,
             0);
   const auto trials = detail::csv_rows(read("study/trials.csv"), ',', "trials.csv", diagnostics);
-  ASSERT_EQ(trials.size(), 3U);
+  ASSERT_GE(trials.size(), 3U);
   EXPECT_EQ(trials[0].cells.size(), trials[1].cells.size());
   for (const std::string& cell : trials[0].cells) {
     EXPECT_EQ(std::string("=+-@").find(cell.front()), std::string::npos) << cell;
