@@ -59,7 +59,8 @@ class AnyEvaluator {
   /// The Jacobian's columns.
   [[nodiscard]] virtual const FreeSet& free() const = 0;
 
-  /// Evaluates all residuals, sample by sample; samples of one layout are consecutive.
+  /// Evaluates all residuals of error blocks, sample by sample; samples of one layout are consecutive.  Priors are not
+  /// visited: see PriorTerm::evaluate().
   /// @param values       of all parameters of the table
   /// @param derivatives  compute the Jacobian, too
   /// @param at           where derivatives are taken

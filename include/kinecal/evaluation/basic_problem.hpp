@@ -23,7 +23,8 @@ class BasicProblem final : public AnyProblem {
   BasicProblem(const BasicProblem& other, AnyProblem::WithoutSamples without)
       : AnyProblem(other, without), evaluations_(other.evaluations_), codes_(other.codes_) {}
 
-  /// Adds a sensor.
+  /// Adds a sensor.  Its parameters must be in the table (add_sensor_parameters()): one that is not counts as
+  /// zero, not as its initial value.
   /// @param walks  compiled walks along its chains, if any
   /// @throws  as AnyProblem::add_built_in()
   template <class M>

@@ -26,7 +26,7 @@ namespace kinecal::detail {
 template <class S, bool kModels>
 struct JointStates {
   /// Of each joint: cosine and sine if it rotates, else position and an unused number; with models,
-  /// then the effects of their parameters.
+  /// then the effects of their parameters.  MountedSensor::joints() writes them.
   const S* numbers;
   std::size_t num_effects = 0;  ///< of each joint
 

@@ -28,7 +28,7 @@ struct ObservationNumbers {
   std::vector<double> variance;  ///< of each feature: its sigma squared, or zero; empty: no sigmas
   std::vector<double> measured;  ///< of each feature: 3, or 12 with an orientation
   std::vector<double> settings;  ///< see AnySensor::settings()
-  /// Of each chain to a feature: the numbers of JointStates (batch.hpp).
+  /// Of each chain to a feature: the numbers of JointStates (batches.hpp).
   std::vector<std::optional<std::vector<double>>> joints;
 };
 

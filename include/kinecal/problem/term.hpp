@@ -64,7 +64,9 @@ enum class Linearization {
   measured,   ///< the points that the sensors measured
   error_free  ///< measurements replaced by the model's prediction.  A nonzero residual rotates
               ///< with the robot and would make an undetermined parameter combination look
-              ///< observable.  Planes are not replaced.
+  ///< observable.  Residuals are those at the replaced points, so use the Jacobian only.
+  ///< Planes are not replaced; pixels need not be, as their derivatives do not contain the
+  ///< measurement.
 };
 
 /// The largest number of parameters, its own and its sensors', that an error block may depend on.

@@ -36,7 +36,7 @@ class FeatureWrenches {
     return twists_[body]->translational.size();
   }
   /// @}
-  /// Number of the sensors' own parameters.
+  /// Number of the own parameters of sensors and block.
   [[nodiscard]] std::size_t own() const { return own_; }
 
   /// The twists of columns i, i + 1, ...
@@ -47,7 +47,7 @@ class FeatureWrenches {
   [[nodiscard]] PacketRows<S> wrenches(std::size_t body) const {
     return {columns_.data() + 6 + 6 * body, size(), 3};
   }
-  /// Adds the products of the sensors' own columns with each other and with the residual.
+  /// Adds the products of the columns of own parameters with each other and with the residual.
   void add_own(S* sums, std::size_t stride) const {
     for (std::size_t c = 1; c <= own_; ++c) {
       for (std::size_t i = 0; i <= c; ++i) sums[c * stride + i] += row(c)[i];
@@ -56,7 +56,7 @@ class FeatureWrenches {
 
   /// Starts a sum over features.
   /// @param twists  of each body; must live until the sums are added
-  /// @param own     number of the sensors' own parameters
+  /// @param own     number of the own parameters of sensors and block
   void start(std::span<const ChainTwists<S>* const> twists, std::size_t own);
   /// Adds w L^T L of a feature.
   template <int M, int Bodies>
@@ -87,7 +87,7 @@ class FeatureWrenches {
   void finish();
 
  private:
-  /// Row i of K: the lower triangle within a body, full rows between bodies.
+  /// Row i of K: the lower triangle within a body, full rows between bodies; after finish() all of it.
   [[nodiscard]] const S* row(std::size_t i) const { return &k_[i * width_]; }
 
   /// Numbers per column: its twist, and a wrench on each body.

@@ -103,7 +103,8 @@ class PointWrenches {
     static_assert(sizeof(Column) == 12 * sizeof(S));
     return {columns_[i].velocity.data(), 12, 3};
   }
-  /// Force and moment of each column on a body.
+  /// Force and moment of each column on a body.  The force is the velocity, so its three numbers are shared; the
+  /// moments follow at 6 and 9.
   [[nodiscard]] PacketRows<S> wrenches(std::size_t body) const {
     return {columns_[0].velocity.data(), 12, 6 + 3 * body};
   }
