@@ -43,6 +43,7 @@ Content read_yaml(const std::string& input, Diagnostics& diagnostics) {
   } catch (const InputError& error) {
     found.errors.emplace_back(error.what());
   }
+  diagnostics.notes.insert(diagnostics.notes.end(), found.notes.begin(), found.notes.end());
   diagnostics.errors.insert(diagnostics.errors.end(), found.errors.begin(), found.errors.end());
   diagnostics.warnings.insert(diagnostics.warnings.end(), found.warnings.begin(),
                               found.warnings.end());

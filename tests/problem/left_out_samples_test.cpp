@@ -93,7 +93,10 @@ TEST(Measurements, ThatAreReplacedAreAsIfTheyHadBeenAdded) {
   for (int i = 0; i < problem->num_samples(); ++i) {
     const Sample& sample = samples[static_cast<std::size_t>(i)];
     const Sample paired = problem->paired(sample).value_or(sample);
-    for (const Observation& seen : paired.observations) problem->set_measurements(i, seen);
+    for (const MountedSensor& sensor : problem->sensors()) {
+      const Observation* seen = paired.observation(sensor.mount().name);
+      if (seen != nullptr && !seen->features.empty()) problem->set_measurements(i, *seen);
+    }
   }
   const std::unique_ptr<AnyProblem> expected = scene.problem(samples);
   expect_same(*problem, *expected, scene.truth, scene.free());
