@@ -140,6 +140,7 @@ struct PlaneView {
 
 /// The fit with the best focal length of an equidistant fisheye whose axis is at the centre of the image.
 /// It fits a board far from the axis, or behind the camera, too, of which no pinhole has an image.
+/// @returns  a fit of nothing if the camera has no size
 [[nodiscard]] inline CornerFit best_fisheye(const PlaneView& view, const CameraInfo& camera) {
   CameraInfo lens;
   lens.width = camera.width;
@@ -150,6 +151,7 @@ struct PlaneView {
   const double longer = std::max(camera.width, camera.height);
   double best_focal = kMost * longer, step = 1.1;
   CornerFit best;
+  if (longer == 0.0) return best;  // the size of the image is unknown
   const auto attempt = [&](double focal) {
     lens.k = {focal, 0, 0.5 * camera.width, 0, focal, 0.5 * camera.height, 0, 0, 1};
     const auto known = known_lens(lens, view);
