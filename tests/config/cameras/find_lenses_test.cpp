@@ -31,7 +31,7 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kOneDegree = std::numbers::pi / 180.0;
 
 /// A camera that is simulated.
 struct TrueCamera {
@@ -50,12 +50,12 @@ std::vector<Sample> photographs(const TrueCamera& camera, Chance& chance, double
   const double square = 0.04, board = 8 * square;
   std::vector<Sample> samples;
   while (std::ssize(samples) < camera.views) {
-    const double off = chance(0.0, 0.4 * camera.view) * kDegree, about = chance(-3.1, 3.1);
+    const double off = chance(0.0, 0.4 * camera.view) * kOneDegree, about = chance(-3.1, 3.1);
     const Matrix3<double> towards =
         exp(Vector3<double>(off * std::cos(about), off * std::sin(about), 0.0));
     const Matrix3<double> turn = exp(Vector3<double>(chance(-0.7, 0.7), chance(-0.7, 0.7), 0.0)) *
                                  exp(Vector3<double>(0.0, 0.0, chance(-3.1, 3.1)));
-    const double covers = std::min(60.0, camera.view) * chance(0.35, 0.8) * kDegree;
+    const double covers = std::min(60.0, camera.view) * chance(0.35, 0.8) * kOneDegree;
     Pose<double> pose{Matrix3<double>(towards * turn),
                       towards * Vector3<double>(0.0, 0.0, 0.5 * board / std::tan(0.5 * covers))};
     pose.translation -= pose.rotation * Vector3<double>(4 * square, 3 * square, 0.0);
@@ -70,7 +70,7 @@ std::vector<Sample> photographs(const TrueCamera& camera, Chance& chance, double
       const double u = at.x() + camera.noise * chance.normal(),
                    v = at.y() + camera.noise * chance.normal();
       const double angle = std::atan2(p.head<2>().norm(), p.z());
-      if (!(angle < 0.55 * camera.view * kDegree && u > 0.0 && u < blank.width && v > 0.0 &&
+      if (!(angle < 0.55 * camera.view * kOneDegree && u > 0.0 && u < blank.width && v > 0.0 &&
             v < blank.height))
         continue;
       sample.observations[0].features.push_back({"board", corner, {}, {}, i});
@@ -101,7 +101,7 @@ TrueCamera drawn_camera(Chance& chance) {
   camera.view = chance(25.0, 190.0);
   camera.noise = chance(0.1, 0.4);
   camera.views = static_cast<int>(std::lround(std::exp(chance(std::log(8.0), std::log(100.0)))));
-  const double half = 0.5 * camera.view * kDegree;
+  const double half = 0.5 * camera.view * kOneDegree;
   if (camera.view < 100.0) {
     const double r2 = std::tan(half) * std::tan(half), k1 = chance(-0.15, 0.08) / r2;
     const bool is_plain = chance(0.0, 1.0) < 0.3;
@@ -116,10 +116,10 @@ TrueCamera drawn_camera(Chance& chance) {
 }
 
 /// The errors of the lenses that were tried, and that of the one that was taken, pixels.
-struct Errors {
+struct HeldOutErrors {
   double least = HUGE_VAL, taken = 0.0;
 
-  explicit Errors(const std::vector<std::string>& notes) {
+  explicit HeldOutErrors(const std::vector<std::string>& notes) {
     const auto note = std::find_if(notes.begin(), notes.end(), [](const std::string& one) {
       return one.find("taken as ") != std::string::npos;
     });
@@ -183,7 +183,7 @@ TEST(FindLenses, ImagesAsWellAsAnyOther) {
     const std::vector<Sample> samples = photographs(truth, chance);
     Cameras found(initial_cameras({"camera"}), samples);
     ASSERT_TRUE(found.diagnostics.errors.empty()) << n << ": " << found.diagnostics.errors.front();
-    const Errors errors(found.diagnostics.notes);
+    const HeldOutErrors errors(found.diagnostics.notes);
     ASSERT_GT(errors.taken, 0.0) << n;
     ++solved;
     const bool is_near = errors.taken <= 1.02 * errors.least;
@@ -233,7 +233,7 @@ TEST(FindLenses, PixelsDecideNotCoefficients) {
   const Cameras found(initial_cameras({"camera"}), photographs(truth, chance));
   ASSERT_THAT(found.diagnostics.errors, testing::IsEmpty());
   EXPECT_THAT(found.diagnostics.notes, Contains(HasSubstr("taken as plumb_bob k1 k2 p1 p2 k3")));
-  const Errors errors(found.diagnostics.notes);
+  const HeldOutErrors errors(found.diagnostics.notes);
   EXPECT_LT(errors.taken, 0.2);  // sqrt(2) * 0.12
 }
 
@@ -269,8 +269,8 @@ TEST(FindLenses, ASigmaOfFeaturesIsNoUnit) {
   const JudgedResult as_is = calibrate_and_judge(plain.calibration, plain.samples);
   for (const double sigma : {0.01, 0.2, 5.0}) {
     Cameras weighted = found(sigma);
-    EXPECT_NEAR(Errors(weighted.diagnostics.notes).taken, Errors(plain.diagnostics.notes).taken,
-                1e-3)
+    EXPECT_NEAR(HeldOutErrors(weighted.diagnostics.notes).taken,
+                HeldOutErrors(plain.diagnostics.notes).taken, 1e-3)
         << sigma;
     const JudgedResult judged = calibrate_and_judge(weighted.calibration, weighted.samples);
     const BlockNoise &noise = judged.assessments.back().noise[0],
