@@ -81,17 +81,17 @@ TEST_F(CaptureProgram, ResumesWhereItEnded) {
   const Outcome lost =
       run(kProgram +
           " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
-          "--robot simulated:sim/lost.yaml -o samples.yaml --contact-sheet views.png");
+          "--robot simulated:sim/lost.yaml -o samples.yaml --contact-sheet views.html");
   EXPECT_EQ(lost.code, 1) << lost.out;
   EXPECT_THAT(lost.err, HasSubstr("--resume goes on from here"));
-  const std::string sheet = read("views.png");
-  EXPECT_THAT(sheet, testing::StartsWith("\x89PNG"));
+  const std::string sheet = read("views.html");
+  EXPECT_THAT(sheet, HasSubstr("<svg"));
   const int before = samples();
   EXPECT_GT(before, 0);
   EXPECT_LT(before, 6);
   EXPECT_EQ(capture("").code, 1);  // the file is there
-  EXPECT_EQ(capture("--contact-sheet views.png").code, 1);
-  const Outcome rest = capture("--resume --contact-sheet views.png");
+  EXPECT_EQ(capture("--contact-sheet views.html").code, 1);
+  const Outcome rest = capture("--resume --contact-sheet views.html");
   EXPECT_EQ(rest.code, 0) << rest.err;
   EXPECT_THAT(rest.out, AllOf(HasSubstr("(" + std::to_string(before) + " from before)"),
                               HasSubstr("pose " + std::to_string(before + 1) + " of 6: "),
@@ -99,7 +99,7 @@ TEST_F(CaptureProgram, ResumesWhereItEnded) {
                               ContainsRegex("pose 6 of 6: .*features\n")))
       << "nothing is left after the last pose";
   EXPECT_EQ(samples(), 6);
-  EXPECT_NE(read("views.png"), sheet);
+  EXPECT_NE(read("views.html"), sheet);
   EXPECT_EQ(capture("--resume").out,
             "samples.yaml: 6 samples from before; all poses of sim/poses.yaml are captured\n");
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <sstream>
 
@@ -64,9 +65,11 @@ void FrozenCameras::add(const MeasuredJoints& joints, std::span<const FinderOutc
         last_.try_emplace(outcome.finder, Seen{joints, view.stamp, view.image});
     if (is_new) continue;
     Seen& seen = known->second;
-    const bool is_same = seen.image.width == view.image.width &&
-                         seen.image.height == view.image.height &&
-                         seen.image.pixels == view.image.pixels;
+    const auto& pixels = view.image.pixels;
+    const bool is_blank =  // as that of a cloud without colours: it tells nothing
+        std::adjacent_find(pixels.begin(), pixels.end(), std::not_equal_to<>()) == pixels.end();
+    const bool is_same = !is_blank && seen.image.width == view.image.width &&
+                         seen.image.height == view.image.height && seen.image.pixels == pixels;
     for (std::size_t i = 0; is_same && i < joints.names.size(); ++i) {
       const std::string& name = joints.names[i];
       const double before = seen.joints.position(name).value_or(joints.positions[i]);

@@ -291,17 +291,7 @@ constexpr std::array<LensForm, 10> kLenses = {
 /// Sets how well pixels are known.
 void set_known(const CalibrationStep& step, ParameterValues values, const std::string& camera,
                TriedLens& lens) {
-  const AnyProblem& problem = *step.problem;
-  const auto evaluator = problem.evaluator(step.free, 1);
-  const LinearFit fit =
-      linear_fit(*evaluator, values, determined_coordinates(problem, step.free, values));
-  const Eigen::MatrixXd inverse = Spectrum(information(fit, fit.loss)).pseudo_inverse();
-  const std::vector<BlockNoise> noise = estimate_noise(problem, fit, inverse);
-  const PoseGroups poses = pose_groups(problem, lens.samples);
-  const Uncertainty known =
-      uncertainty(problem, fit, noise, poses, prior_variance(noise) * fit.prior_hessian);
-  for (const ProjectionMap& map :
-       projection_maps({*evaluator, step.free, values, fit, known, lens.samples, poses})) {
+  for (const ProjectionMap& map : projection_maps(*step.problem, step.free, values, lens.samples)) {
     if (map.sensor != camera) continue;
     lens.known = map.deviations()[1];
     lens.is_traded = map.number(ProjectionMap::kAxisFocal) != nullptr;

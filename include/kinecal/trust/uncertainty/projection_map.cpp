@@ -21,6 +21,7 @@
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/text/image_region.hpp"
 #include "kinecal/trust/f_distribution.hpp"
+#include "kinecal/trust/noise/noise.hpp"
 #include "kinecal/trust/uncertainty/feature_places.hpp"
 #include "kinecal/trust/uncertainty/weak_parameters.hpp"
 
@@ -518,6 +519,20 @@ std::vector<ProjectionMap> projection_maps(const KnownSolution& solution) {
                        .map(mounted.mount().name, apart, allowed, solution.poses.count - 1.0));
   }
   return maps;
+}
+
+std::vector<ProjectionMap> projection_maps(const AnyProblem& problem, const FreeSet& free,
+                                           ParameterValues values,
+                                           const std::vector<Sample>& samples) {
+  const auto evaluator = problem.evaluator(free, 1);
+  const LinearFit fit =
+      linear_fit(*evaluator, values, determined_coordinates(problem, free, values));
+  const Eigen::MatrixXd inverse = Spectrum(information(fit, fit.loss)).pseudo_inverse();
+  const std::vector<BlockNoise> noise = estimate_noise(problem, fit, inverse);
+  const PoseGroups poses = pose_groups(problem, samples);
+  const Uncertainty known =
+      uncertainty(problem, fit, noise, poses, prior_variance(noise) * fit.prior_hessian);
+  return projection_maps({*evaluator, free, values, fit, known, samples, poses});
 }
 
 }  // namespace kinecal

@@ -108,5 +108,13 @@ struct KnownSolution {
 
 /// Maps of the cameras of which something is free: an intrinsic parameter or a coefficient of the lens.
 [[nodiscard]] std::vector<ProjectionMap> projection_maps(const KnownSolution& solution);
+/// The same, with the noise that the residuals show.
+/// @param free     parameters
+/// @param values   the solution, of all parameters of the table
+/// @param samples  those of the problem, in their order
+[[nodiscard]] std::vector<ProjectionMap> projection_maps(const AnyProblem& problem,
+                                                         const FreeSet& free,
+                                                         ParameterValues values,
+                                                         const std::vector<Sample>& samples);
 
 }  // namespace kinecal
