@@ -527,7 +527,7 @@ std::vector<ProjectionMap> projection_maps(const AnyProblem& problem, const Free
   const auto evaluator = problem.evaluator(free, 1);
   const LinearFit fit =
       linear_fit(*evaluator, values, determined_coordinates(problem, free, values));
-  const Eigen::MatrixXd inverse = Spectrum(information(fit, fit.loss)).pseudo_inverse();
+  const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
   const std::vector<BlockNoise> noise = estimate_noise(problem, fit, inverse);
   const PoseGroups poses = pose_groups(problem, samples);
   const Uncertainty known =
