@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <sstream>
 
@@ -58,18 +57,21 @@ std::string AlikeFaults::add(const CapturedPose& pose, int most) {
 
 void FrozenCameras::add(const MeasuredJoints& joints, std::span<const FinderOutcome> outcomes,
                         const SettleOptions& options) {
+  const auto same_point = [](const Vector3<float>& a, const Vector3<float>& b) {
+    return a == b || (!a.allFinite() && !b.allFinite());
+  };
   for (const FinderOutcome& outcome : outcomes) {
     const View& view = outcome.view;
     if (!outcome.found || view.image.empty()) continue;
     const auto [known, is_new] =
-        last_.try_emplace(outcome.finder, Seen{joints, view.stamp, view.image});
+        last_.try_emplace(outcome.finder, Seen{joints, view.stamp, view.image, view.points});
     if (is_new) continue;
     Seen& seen = known->second;
-    const auto& pixels = view.image.pixels;
-    const bool is_blank =  // as that of a cloud without colours: it tells nothing
-        std::adjacent_find(pixels.begin(), pixels.end(), std::not_equal_to<>()) == pixels.end();
-    const bool is_same = !is_blank && seen.image.width == view.image.width &&
-                         seen.image.height == view.image.height && seen.image.pixels == pixels;
+    const bool is_same =
+        seen.image.width == view.image.width && seen.image.height == view.image.height &&
+        seen.image.pixels == view.image.pixels &&
+        std::equal(seen.points.pixels.begin(), seen.points.pixels.end(), view.points.pixels.begin(),
+                   view.points.pixels.end(), same_point);
     for (std::size_t i = 0; is_same && i < joints.names.size(); ++i) {
       const std::string& name = joints.names[i];
       const double before = seen.joints.position(name).value_or(joints.positions[i]);
@@ -81,7 +83,7 @@ void FrozenCameras::add(const MeasuredJoints& joints, std::span<const FinderOutc
            << ", but each pixel is as in the pose before; restart the camera's driver";
       throw SilenceError(text.str(), outcome.finder, seen.stamp);
     }
-    if (!is_same) seen = {joints, view.stamp, view.image};
+    if (!is_same) seen = {joints, view.stamp, view.image, view.points};
   }
 }
 

@@ -47,8 +47,8 @@ class AlikeFaults {
   std::string last_;  ///< fault, without its numbers
 };
 
-/// Finds cameras that send the same image again and again.  Two images of a real camera differ by
-/// noise.
+/// Finds cameras that send the same image, and the same points if they measure depth, again and
+/// again.  Two images of a real camera differ by noise.
 class FrozenCameras {
  public:
   /// Takes what finders have seen in a pose.
@@ -62,6 +62,7 @@ class FrozenCameras {
     MeasuredJoints joints;
     Stamp stamp;  ///< of the first view with this image
     GrayImage image;
+    PointCloud points;
   };
   std::map<std::string, Seen> last_;  ///< by finder
 };
