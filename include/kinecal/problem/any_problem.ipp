@@ -178,17 +178,18 @@ struct TermConditions {
   TermConditions all;
   std::vector<const Observation*> seen;
   std::size_t features = 1;
-  for (const int s : term.sensors) {
-    const auto& mount = sensors[static_cast<std::size_t>(s)].mount();
-    if (!term.pairs_features() || term.conditions.empty()) break;
-    seen.push_back(sample.observation(mount.name));
-    features = seen.back()->features.size();
+  if (term.conditions.empty()) return all;
+  if (term.pairs_features()) {
     const auto has_some = [](const Feature& feature) { return !feature.conditions.empty(); };
-    if (std::any_of(seen.back()->features.begin(), seen.back()->features.end(), has_some)) {
-      all.step = term.conditions.size();
+    for (const int s : term.sensors) {
+      seen.push_back(sample.observation(sensors[static_cast<std::size_t>(s)].mount().name));
+      const std::vector<Feature>& of_sensor = seen.back()->features;
+      if (std::any_of(of_sensor.begin(), of_sensor.end(), has_some)) {
+        all.step = term.conditions.size();
+        features = of_sensor.size();
+      }
     }
   }
-  if (all.step == 0) seen.clear(), features = 1;
   all.values.assign(features * term.conditions.size(), 0.0);
   for (const std::size_t i : all.step == 0 ? std::vector<std::size_t>{0} : compared) {
     for (std::size_t k = 0; k < term.conditions.size(); ++k) {

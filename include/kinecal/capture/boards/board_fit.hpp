@@ -2,8 +2,8 @@
 //
 //   pixel = lens(H (x, y, 1))
 //
-// H is a homography.  The lens is a pinhole, that of camera_info, or r_u = r / (1 + k r^2) about the image
-// centre, whatever agrees best; if more is left, a smooth field (a polynomial of x and y) is added.
+// H is a homography.  The lens is a pinhole, that of camera_info, r_u = r / (1 + k r^2) about the image
+// centre, or an equidistant fisheye, whatever agrees best; if more is left, a smooth field (a polynomial of x and y) is added.
 // So a lens that nobody has calibrated costs no right corner.  Weights that fall to zero for distant
 // corners make H follow the majority.
 // Source: Fitzgibbon, Simultaneous linear estimation of multiple view geometry and lens distortion,

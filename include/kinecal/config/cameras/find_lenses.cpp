@@ -29,6 +29,7 @@
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/sensors/lenses/lens_names.hpp"
 #include "kinecal/solve/calibrate.hpp"
+#include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/systematic/folded_lens.hpp"
 #include "kinecal/trust/uncertainty/projection_map.hpp"
@@ -173,11 +174,10 @@ class SureMean {
   }
   [[nodiscard]] bool is_positive() const {
     if (count_ < 3.0) return false;
+    constexpr double kChance = 0.01;  // Student's t on one side: its square is an F on both
     const double mean = sum_ / count_, variance = squared_ / count_ - mean * mean;
-    // Chance is below 1 %: Student's t, to 3 % of its value from four values on.
     const double freedom = count_ - 1.0;
-    const double sure = 2.326 * (1.0 + 1.6 / freedom + 4.0 / (freedom * freedom));
-    return mean > sure * std::sqrt(std::max(0.0, variance) / freedom);
+    return mean > 0.0 && mean * mean * freedom > f_exceeded(1.0, freedom, 2.0 * kChance) * variance;
   }
 
  private:

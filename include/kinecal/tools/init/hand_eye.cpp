@@ -576,7 +576,7 @@ void choose_marker_form(const HandEyeTable& table, const HandEyeTables& tables,
   for (const PoseColumns& pose : poses) {
     const bool is_marker =
         has_any(pose.of, {"marker", "target", "board", "tag", "object", "obj", "cam", "aruco",
-                          "checker", "pattern", "tracking", "sensor", "aruco", "charuco", "eye"});
+                          "checker", "pattern", "tracking", "sensor", "charuco", "eye"});
     const bool is_flange =
         !is_marker && has_any(pose.of, {"flange", "tcp", "tool", "hand", "gripper", "ee", "eef",
                                         "effector", "robot", "arm"});
