@@ -77,7 +77,11 @@ concept RobotLamp = requires(L& lamp, int code) {
 };
 
 /// Finds features of a target in a view.  Does not throw if it finds nothing.
-///   finder.find(view)  observations of two or more sensors, or why they are missing
+///   finder.find(view)         observations of two or more sensors, or why they are missing
+/// Those of a capture.yaml (FinderSettings) may have, too:
+///   finder.fault(view)        why a view cannot be searched, whatever it shows; empty if it can
+///   finder.region_frame()     link in whose frame it searches; empty: the camera's own
+///   finder.place_on(camera_in)  takes the poses of the camera in links from CameraIn, as the robot is known
 template <class F>
 concept Finder = requires(const F& finder, const View& view) {
   { finder.find(view) } -> std::same_as<Found>;

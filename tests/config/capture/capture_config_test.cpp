@@ -52,7 +52,7 @@ TEST(CaptureConfig, ReadsThoseOfTheFetch) {
   EXPECT_EQ(leds.leds[3].code, 8);
   EXPECT_EQ(leds.leds[3].position, Vector3<double>(0.1044, -0.0355, 0.0396));
   const auto& ground = std::get<PlaneFinder>(both.finders[1].settings);
-  EXPECT_EQ(both.finders[1].region_frame, "base_link");
+  EXPECT_EQ(region_frame(both.finders[1].settings), "base_link");
   EXPECT_EQ(ground.region.least.z(), -2.0);
   EXPECT_EQ(std::get<CheckerboardSettings>(board.finders.at(0).settings).target.corners,
             CornerKind::points);
@@ -244,7 +244,7 @@ TEST(CaptureConfig, PutsRegionsOnTheRobot) {
   EXPECT_FALSE(base_T_camera(view).has_value());  // the position of the joint is missing
   view.joints = {{}, {"pan"}, {0.5}};
   EXPECT_EQ(base_T_camera(view)->translation, Vector3<double>(0, 0, 1));
-  file.config.finders[0].region_frame = "bse";
+  std::get<PlaneFinder>(file.config.finders[0].settings).region.frame = "bse";
   EXPECT_THROW((void)on_robot(file.config.finders[0], robot), InputError);
 }
 

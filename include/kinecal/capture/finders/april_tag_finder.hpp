@@ -26,8 +26,12 @@ struct PlacedTag {
   Vector3<double> centre = {0, 0, 0};  ///< (3) metres, in the frame of the target
 };
 
+class AprilTagFinder;
+
 /// A target with tags.
 struct AprilTagSettings {
+  using FinderType = AprilTagFinder;
+
   int columns = 0;                   ///< of the grid; 0: no grid, only `tags`
   int rows = 0;                      ///< of the grid
   double size = 0.0;                 ///< side of a tag's black border, metres

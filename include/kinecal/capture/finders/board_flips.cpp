@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/capture/finders/board_flips.hpp"
 
+#include <fmt/core.h>
+
 #include <array>
 #include <optional>
 #include <stdexcept>
@@ -68,12 +70,21 @@ void turn_board(Observation& camera, const AlikeBoard& board, int turns) {
 }  // namespace detail
 
 AlikeBoard alike_board(const CheckerboardSettings& board) {
-  return {board.points_x, board.points_y, turns_alike(board.points_x, board.points_y),
-          board.target};
+  return {board.points_x,
+          board.points_y,
+          turns_alike(board.points_x, board.points_y),
+          board.target,
+          fmt::format("a board of {}x{} corners", board.points_x, board.points_y),
+          "a board of which points_x + points_y is odd"};
 }
 
 AlikeBoard alike_board(const CircleGridSettings& grid) {
-  return {grid.points_x, grid.points_y, turns_alike(grid), grid.target};
+  return {grid.points_x,
+          grid.points_y,
+          turns_alike(grid),
+          grid.target,
+          fmt::format("a grid of {}x{} discs", grid.points_x, grid.points_y),
+          "an asymmetric grid of which points_y is odd"};
 }
 
 Flips resolve_flips(std::span<Sample> samples, const AlikeBoard& board,

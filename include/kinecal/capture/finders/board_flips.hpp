@@ -29,6 +29,8 @@ struct AlikeBoard {
   int columns = 0, rows = 0;  ///< of corners, or of the centres of discs
   int turns = 4;  ///< quarter turns after which it looks the same: 1, 2; 4 if it does not
   TargetSettings target = {};
+  std::string called = {};  ///< "a board of 8x6 corners"
+  std::string better = {};  ///< one that does not: "a board of which points_x + points_y is odd"
 };
 
 /// A checkerboard as such a board.

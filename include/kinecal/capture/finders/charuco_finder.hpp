@@ -14,8 +14,12 @@
 
 namespace kinecal {
 
+class CharucoFinder;
+
 /// A ChArUco board, with OpenCV's names.
 struct CharucoSettings {
+  using FinderType = CharucoFinder;
+
   int squares_x = 5;                       ///< squares of a row
   int squares_y = 7;                       ///< squares of a column
   double square_size = 0.04;               ///< side of a square, metres

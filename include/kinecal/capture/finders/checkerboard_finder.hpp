@@ -15,8 +15,12 @@
 
 namespace kinecal {
 
+class CheckerboardFinder;
+
 /// A checkerboard, with robot_calibration's names.
 struct CheckerboardSettings {
+  using FinderType = CheckerboardFinder;
+
   int points_x = 5;            ///< inner corners of a row; at least 3
   int points_y = 4;            ///< inner corners of a column; at least 3
   double size = 0.0245;        ///< side of a square, metres

@@ -16,8 +16,12 @@
 
 namespace kinecal {
 
+class CircleGridFinder;
+
 /// A grid of discs.
 struct CircleGridSettings {
+  using FinderType = CircleGridFinder;
+
   int points_x = 4;    ///< discs of a row; at least 2
   int points_y = 11;   ///< rows; at least 2
   double size = 0.02;  ///< distance of rows, metres; of columns, too, or half of it if asymmetric

@@ -6,9 +6,17 @@
 #include <cmath>
 #include <utility>
 
+#include "kinecal/capture/finders/view_checks.hpp"
 #include "kinecal/text/reading.hpp"
 
 namespace kinecal {
+
+std::string LedFinder::fault(const View& view) {
+  for (const auto& problem : {image_problem, cloud_problem, camera_problem}) {
+    if (std::string fault = problem(view); !fault.empty()) return fault;
+  }
+  return "";
+}
 
 std::string LedFinder::called(std::size_t led) const {
   const Led& known = leds[led];

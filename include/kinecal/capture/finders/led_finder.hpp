@@ -36,6 +36,12 @@ struct LedFinder {
   /// Pose of the camera in the frame of the LEDs; empty: LEDs may be anywhere in the image.
   PoseOfView frame_T_camera;
 
+  /// Why a view cannot be searched, whatever it shows; empty if it can.
+  [[nodiscard]] static std::string fault(const View& view);
+
+  /// Takes the pose of the camera in the frame of the LEDs.
+  void place_on(const CameraIn& camera_in) { frame_T_camera = camera_in(frame); }
+
   /// The name of an LED in messages: "LED 1 (led2)".
   [[nodiscard]] std::string called(std::size_t led) const;
 };

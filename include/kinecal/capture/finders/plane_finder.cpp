@@ -10,11 +10,15 @@
 
 namespace kinecal {
 
+std::string PlaneFinder::fault(const View& view) {
+  std::string fault = cloud_problem(view);
+  return fault.empty() ? camera_problem(view) : fault;
+}
+
 PlaneInView PlaneFinder::plane_in(const View& view) const {
   constexpr std::size_t kLeastPoints = 50;
   PlaneInView plane;
-  plane.problem = cloud_problem(view);
-  if (plane.problem.empty()) plane.problem = camera_problem(view);
+  plane.problem = fault(view);
   if (!plane.problem.empty()) return plane;
   plane.region_points = points_in(region, view);
   plane.problem = plane.region_points.problem;

@@ -30,6 +30,15 @@ struct PlaneFinder {
   /// Points of the plane in the optical frame.  Without ids: no two views share points.
   [[nodiscard]] Found find(const View& view) const;
 
+  /// Why a view cannot be searched, whatever it shows; empty if it can.
+  [[nodiscard]] static std::string fault(const View& view);
+
+  /// Link in which the region is given; empty: the camera's own frame.
+  [[nodiscard]] const std::string& region_frame() const { return region.frame; }
+
+  /// Takes the pose of the camera in that link.
+  void place_on(const CameraIn& camera_in) { region.frame_T_camera = camera_in(region.frame); }
+
   /// The plane itself.
   [[nodiscard]] PlaneInView plane_in(const View& view) const;
 };

@@ -17,6 +17,9 @@ namespace kinecal {
 /// the view's joints; nullopt if they do not determine it.
 using PoseOfView = std::function<std::optional<Pose<double>>(const View&)>;
 
+/// Gives the pose of the camera in a link of the robot.
+using CameraIn = std::function<PoseOfView(const std::string& link)>;
+
 /// A box in a frame.
 struct Region {
   std::string frame;  ///< for messages: transform_frame of upstream; empty: the camera's own

@@ -21,6 +21,11 @@ struct RobotFinder {
 
   /// Points of the plane, then of the robot, in the optical frame; up to `plane.points_max` each.
   [[nodiscard]] Found find(const View& view) const;
+
+  /// As those of the plane.
+  [[nodiscard]] static std::string fault(const View& view) { return PlaneFinder::fault(view); }
+  [[nodiscard]] const std::string& region_frame() const { return plane.region_frame(); }
+  void place_on(const CameraIn& camera_in) { plane.place_on(camera_in); }
 };
 static_assert(Finder<RobotFinder>);
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/capture/finders/scan_finder.hpp"
 
-#include "kinecal/capture/finders/view_checks.hpp"
-
 namespace kinecal {
 
 Found ScanFinder::find(const View& view) const {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "kinecal/capture/finders/region.hpp"
+#include "kinecal/capture/finders/view_checks.hpp"
 #include "kinecal/capture/robot_interface.hpp"
 
 namespace kinecal {
@@ -26,6 +27,15 @@ struct ScanFinder {
 
   /// The points of the scan.
   [[nodiscard]] Found find(const View& view) const;
+
+  /// Why a view cannot be used, whatever it shows; empty if it can.
+  [[nodiscard]] static std::string fault(const View& view) { return cloud_problem(view); }
+
+  /// Link of the features; empty: the scanner's own frame.
+  [[nodiscard]] const std::string& region_frame() const { return frame; }
+
+  /// Takes the pose of the scanner in that link.
+  void place_on(const CameraIn& camera_in) { frame_T_scanner = camera_in(frame); }
 };
 static_assert(Finder<ScanFinder>);
 

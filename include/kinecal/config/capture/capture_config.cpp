@@ -307,13 +307,6 @@ namespace {
   finder.action = map.text("action").value_or("");
   map.ignore({"camera_driver", "canera_driver"});  // ROS 2 spells it so
   finder.settings = reader->second(map);
-  if (const auto* plane = std::get_if<PlaneFinder>(&finder.settings)) {
-    finder.region_frame = plane->region.frame;
-  } else if (const auto* robot = std::get_if<RobotFinder>(&finder.settings)) {
-    finder.region_frame = robot->plane.region.frame;
-  } else if (const auto* scan = std::get_if<ScanFinder>(&finder.settings)) {
-    finder.region_frame = scan->frame;
-  }
   map.report_unknown();
   return finder;
 }
@@ -418,6 +411,15 @@ CaptureConfig read_capture_config(const std::string& path, Diagnostics& diagnost
   return config;
 }
 
+std::string region_frame(const FinderSettings& settings) {
+  return std::visit(
+      [](const auto& chosen) -> std::string {
+        if constexpr (requires { chosen.region_frame(); }) return chosen.region_frame();
+        return "";
+      },
+      settings);
+}
+
 FinderSettings on_robot(const CaptureFinder& finder, const Robot& robot) {
   const auto camera_in = [&](const std::string& link) -> PoseOfView {
     if (link.empty()) return {};
@@ -428,15 +430,11 @@ FinderSettings on_robot(const CaptureFinder& finder, const Robot& robot) {
                      "': the robot has no link '" + link + "'" + did_you_mean(link, links));
   };
   FinderSettings settings = finder.settings;
-  if (auto* leds = std::get_if<LedFinder>(&settings)) {
-    leds->frame_T_camera = camera_in(leds->frame);
-  } else if (auto* plane = std::get_if<PlaneFinder>(&settings)) {
-    plane->region.frame_T_camera = camera_in(finder.region_frame);
-  } else if (auto* scan = std::get_if<ScanFinder>(&settings)) {
-    scan->frame_T_scanner = camera_in(finder.region_frame);
-  } else if (auto* body = std::get_if<RobotFinder>(&settings)) {
-    body->plane.region.frame_T_camera = camera_in(finder.region_frame);
-  }
+  std::visit(
+      [&](auto& chosen) {
+        if constexpr (requires { chosen.place_on(camera_in); }) chosen.place_on(camera_in);
+      },
+      settings);
   return settings;
 }
 

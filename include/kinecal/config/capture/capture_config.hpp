@@ -35,21 +35,20 @@ struct CaptureChain {
   std::vector<std::string> joints;  ///< that it moves
 };
 
-/// Settings of any finder.
+/// Settings of any finder: itself, or what a `FinderType` is made from.
 using FinderSettings =
     std::variant<LedFinder, CheckerboardSettings, AprilTagSettings, CharucoSettings,
                  CircleGridSettings, PlaneFinder, ScanFinder, RobotFinder>;
 
 /// A finder and the source of its views.
 struct CaptureFinder {
-  std::string name;               ///< as poses name it
-  std::string type;               ///< "LedFinder"
-  std::string topic;              ///< of its images, clouds or scans
-  std::string camera_info;        ///< topic of its camera's settings
-  std::string action = {};        ///< switches LEDs
-  std::string region_frame = {};  ///< link in which a region is given; empty: the camera's frame
-  FinderSettings settings;        ///< frames not yet on a robot: see on_robot()
-  SourceLocation place;           ///< in the file
+  std::string name;         ///< as poses name it
+  std::string type;         ///< "LedFinder"
+  std::string topic;        ///< of its images, clouds or scans
+  std::string camera_info;  ///< topic of its camera's settings
+  std::string action = {};  ///< switches LEDs
+  FinderSettings settings;  ///< frames not yet on a robot: see on_robot()
+  SourceLocation place;     ///< in the file
 };
 
 /// The content of a file.
@@ -62,6 +61,9 @@ struct CaptureConfig {
 /// Reads a file.  All errors are collected; with errors the result is incomplete.
 /// @throws InputError  "file:line: ..." if the file cannot be read or is not YAML
 [[nodiscard]] CaptureConfig read_capture_config(const std::string& path, Diagnostics& diagnostics);
+
+/// The link in whose frame a finder searches; empty: the camera's own, or it searches images.
+[[nodiscard]] std::string region_frame(const FinderSettings& settings);
 
 /// Settings of a finder with regions and LEDs attached to a robot's links.
 /// @throws InputError  naming a link that the robot does not have

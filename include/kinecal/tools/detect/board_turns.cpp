@@ -32,29 +32,20 @@ namespace {
 }
 
 [[nodiscard]] std::string alike_text(const CaptureFinder& finder, const AlikeBoard& board) {
-  const bool has_discs = std::holds_alternative<CircleGridSettings>(finder.settings);
-  return fmt::format("finder '{}': a {} of {}x{} {} looks the same when it is turned", finder.name,
-                     has_discs ? "grid" : "board", board.columns, board.rows,
-                     has_discs ? "discs" : "corners");
+  return fmt::format("finder '{}': {} looks the same when it is turned", finder.name, board.called);
 }
 
 /// The board of a finder, if it looks the same when it is turned.
 [[nodiscard]] std::optional<AlikeBoard> board_alike(const FinderSettings& settings) {
   constexpr int kFullTurn = 4;  // quarters
-  std::optional<AlikeBoard> board;
-  if (const auto* squares = std::get_if<CheckerboardSettings>(&settings)) {
-    board = alike_board(*squares);
-  } else if (const auto* discs = std::get_if<CircleGridSettings>(&settings)) {
-    board = alike_board(*discs);
-  }
-  return board && board->turns < kFullTurn ? board : std::nullopt;
-}
-
-/// Which boards do not look the same.
-[[nodiscard]] std::string better_board(const FinderSettings& settings) {
-  return std::holds_alternative<CircleGridSettings>(settings)
-             ? "an asymmetric grid of which points_y is odd"
-             : "a board of which points_x + points_y is odd";
+  return std::visit(
+      [](const auto& chosen) -> std::optional<AlikeBoard> {
+        if constexpr (requires { alike_board(chosen); }) {
+          if (AlikeBoard board = alike_board(chosen); board.turns < kFullTurn) return board;
+        }
+        return std::nullopt;
+      },
+      settings);
 }
 
 /// What was turned, in words.
@@ -108,7 +99,7 @@ void turn_boards(const std::vector<CaptureFinder>& finders, const std::optional<
               "--board-link "
               "and --camera-link to have turned boards put right, leave out images in which it is "
               "turned further, or use " +
-              detail::better_board(finder.settings));
+              board->better);
       continue;
     }
     try {

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/tools/detect/detect.hpp"
 
-#include <initializer_list>
 #include <memory>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
-#include "kinecal/capture/finders/view_checks.hpp"
+#include "kinecal/capture/boards/target.hpp"
 #include "kinecal/capture/session/session.hpp"
 
 namespace kinecal {
@@ -27,20 +26,14 @@ template <class F>
   return std::visit(
       [](const auto& chosen) -> std::function<Found(const View&)> {
         using Chosen = std::decay_t<decltype(chosen)>;
-        if constexpr (std::is_same_v<Chosen, LedFinder>) {
+        if constexpr (requires { typename Chosen::FinderType; }) {
+          return shared_finder(typename Chosen::FinderType(chosen));
+        } else if constexpr (Finder<Chosen>) {
+          return shared_finder(chosen);
+        } else {
           throw std::invalid_argument(
               "LEDs have to be switched while a camera looks, so images alone do not do; capture "
               "LEDs on the robot");
-        } else if constexpr (std::is_same_v<Chosen, CheckerboardSettings>) {
-          return shared_finder(CheckerboardFinder(chosen));
-        } else if constexpr (std::is_same_v<Chosen, AprilTagSettings>) {
-          return shared_finder(AprilTagFinder(chosen));
-        } else if constexpr (std::is_same_v<Chosen, CharucoSettings>) {
-          return shared_finder(CharucoFinder(chosen));
-        } else if constexpr (std::is_same_v<Chosen, CircleGridSettings>) {
-          return shared_finder(CircleGridFinder(chosen));
-        } else {
-          return shared_finder(chosen);
         }
       },
       settings);
@@ -58,22 +51,10 @@ ViewFinder view_finder(const CaptureFinder& finder, const FinderSettings& settin
 }
 
 std::string unusable(const FinderSettings& settings, const View& view) {
-  const auto first_of = [&](std::initializer_list<std::string (*)(const View&)> checks) {
-    for (const auto& check : checks) {
-      if (std::string why = check(view); !why.empty()) return why;
-    }
-    return std::string();
-  };
   return std::visit(
       [&](const auto& chosen) -> std::string {
-        using Chosen = std::decay_t<decltype(chosen)>;
-        if constexpr (std::is_same_v<Chosen, LedFinder>) {
-          return first_of({image_problem, cloud_problem, camera_problem});
-        } else if constexpr (std::is_same_v<Chosen, ScanFinder>) {
-          return cloud_problem(view);
-        } else if constexpr (std::is_same_v<Chosen, PlaneFinder> ||
-                             std::is_same_v<Chosen, RobotFinder>) {
-          return first_of({cloud_problem, camera_problem});
+        if constexpr (requires { chosen.fault(view); }) {
+          return chosen.fault(view);
         } else {
           return view_fault(view, chosen.target.corners);
         }

@@ -23,10 +23,9 @@ std::vector<ViewFinder> make_finders(const DetectionInput& input,
   std::vector<ViewFinder> finders;
   for (const CaptureFinder& finder : input.config.finders) {
     try {
-      if (!finder.region_frame.empty() && !input.robot) {
+      if (const std::string frame = region_frame(finder.settings); !frame.empty() && !input.robot) {
         throw InputError(finder.place.str() + ": finder '" + finder.name +
-                         "' has a region in frame '" + finder.region_frame +
-                         "'; give the robot with --urdf");
+                         "' has a region in frame '" + frame + "'; give the robot with --urdf");
       }
       finders.push_back(
           view_finder(finder, input.robot ? on_robot(finder, *input.robot) : finder.settings));
