@@ -164,6 +164,7 @@ inline Change link(int number, double metres) {
 struct Mutation {
   const char* name;
   Change change;
+  bool is_of_robot = false;  ///< the robot has it whenever it moves, not only in these samples
 };
 
 inline std::vector<Mutation> mutations() {
@@ -185,8 +186,8 @@ inline std::vector<Mutation> mutations() {
       {"backlash_of_joint_2", backlash(1, 1.0)},
       {"backlash_of_joint_3", backlash(2, 0.3)},
       {"backlash_of_joint_4", backlash(3, 1.0)},
-      {"eccentric_joint_2", eccentric(1, 0.5)},
-      {"eccentric_joint_4", eccentric(3, 0.5)},
+      {"eccentric_joint_2", eccentric(1, 0.5), true},
+      {"eccentric_joint_4", eccentric(3, 0.5), true},
       {"joint_2_slipped", slip(1, 0.5, 0.5)},
       {"joint_5_slipped", slip(4, 1.0, 0.6)},
       {"bump_of_3_mm", bump(0.003, 0.5)},
@@ -200,8 +201,8 @@ inline std::vector<Mutation> mutations() {
       {"joints_rounded_to_a_third", rounded(0.3)},
       {"joints_5_percent_late", lag(0.05)},
       {"joints_1_percent_late", lag(0.01)},
-      {"sag_of_half_a_degree", sag(0.5)},
-      {"sag_of_0_3_degrees", sag(0.3)},
+      {"sag_of_half_a_degree", sag(0.5), true},
+      {"sag_of_0_3_degrees", sag(0.3), true},
       {"link_2_a_centimetre_longer", link(2, 0.01)},
       {"link_3_a_centimetre_longer", link(3, 0.01)},
       {"link_4_a_centimetre_longer", link(4, 0.01)},
