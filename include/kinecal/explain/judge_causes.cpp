@@ -18,10 +18,14 @@ namespace detail {
 namespace {
 
 /// Values that cannot be, whatever the fit.
-void judge_impossible(const CalibrationInput& input, JudgedResult& judged) {
+/// @param is_explained  a cause of the bad fit is known: cameras are wrong for the same one
+void judge_impossible(const CalibrationInput& input, bool is_explained, JudgedResult& judged) {
   const ParameterTable& table = judged.result.table;
   const std::string camera = impossible_camera(input.calibration, table, input.samples);
-  if (!camera.empty()) judged.judgement.add_causes(Grade::do_not_use, {camera});
+  if (!camera.empty() && is_explained) judged.judgement.add(Grade::do_not_use, camera);
+  if (!camera.empty() && !is_explained) {
+    judged.judgement.add_causes(Grade::do_not_use, {camera});
+  }
   Diagnostics offsets;
   check_offsets(input, table, offsets);
   for (const std::string& error : offsets.errors)
@@ -97,8 +101,10 @@ void judge_fit(const CalibrationInput& input, std::span<const Sample> all,
 
 void judge_causes(const CalibrationInput& input, std::span<const Sample> all, JudgedResult& judged,
                   std::span<const Suspect> own) {
+  const int causes = judged.judgement.causes;
   detail::judge_fit(input, all, own, judged);
-  if (judged.result.converged) detail::judge_impossible(input, judged);
+  if (!judged.result.converged) return;
+  detail::judge_impossible(input, judged.judgement.causes > causes, judged);
 }
 
 void judge_scales(const CalibrationInput& input, JudgedResult& judged) {
