@@ -133,12 +133,12 @@ TEST(Batches, HoldPrecisionsWhereFeaturesHaveSigmasAndConditions) {
   ASSERT_EQ(terms.size(), 2u);
   EXPECT_EQ(terms[0].term, 3);
   EXPECT_EQ(terms[1].term, 5);
-  EXPECT_EQ(batches->of_term(0, terms[0].precisions), nullptr);
+  EXPECT_EQ(batches->of_term(0, terms[0].inverse_sigmas), nullptr);
   for (int i = 0; i < kLanesOfPacket; ++i) {
     EXPECT_EQ(lane(batches->of_term(0, terms[0].conditions)[0], i), 20.0 + i);
-    EXPECT_EQ(lane(batches->of_term(0, terms[1].precisions)[0], i), 1.0);
-    EXPECT_EQ(lane(batches->of_term(0, terms[1].precisions)[1], i), 2.0 + i);
-    EXPECT_EQ(lane(batches->of_term(1, terms[1].precisions)[1], i), 2.0 + kLanesOfPacket)
+    EXPECT_EQ(lane(batches->of_term(0, terms[1].inverse_sigmas)[0], i), 1.0);
+    EXPECT_EQ(lane(batches->of_term(0, terms[1].inverse_sigmas)[1], i), 2.0 + i);
+    EXPECT_EQ(lane(batches->of_term(1, terms[1].inverse_sigmas)[1], i), 2.0 + kLanesOfPacket)
         << "repeated";
   }
 }

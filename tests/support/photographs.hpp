@@ -79,7 +79,7 @@ struct Photographs {
     add_parameters(table, "board", kFrameParameters);
     const Joint board{"board", JointType::floating, "camera", "board", {}, {}, {}, {}};
     auto problem = make_problem(Robot("camera", {board}), "camera", table, {"board"});
-    problem->give_own_poses({"board"});
+    problem->give_sample_poses({"board"});
     problem->add_built_in(ChainPoint{}, {"board", "board"});
     problem->add_built_in(lens_camera(lens), {"camera", "camera"});
     problem->add_built_in("corners", PointToPixel{}, {"board", "camera"}, {.unit = "px"});

@@ -55,7 +55,7 @@ struct InShards {
 const std::vector<std::string> kLens = {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
 
 /// Each photograph has a pose of the board of its own, which uses up six rows.
-TEST(JudgeShards, OwnPosesAreAsWithAllSamplesAtOnce) {
+TEST(JudgeShards, SamplePosesAreAsWithAllSamplesAtOnce) {
   InShards shards({test::distorted_camera(), "plumb_bob", {.views = 240}}, kLens);
   const JudgedResult judged = shards.calibrate();
   ASSERT_TRUE(judged.result.converged && shards.once.result.converged);
@@ -127,7 +127,7 @@ TEST(JudgeShards, AFileThatIsThereTwiceIsNamed) {
 }
 
 /// Sums that were found on disk are those of another process, to the last bit.
-TEST(JudgeShards, OwnPosesDoNotDependOnWhatWasComputedBefore) {
+TEST(JudgeShards, SamplePosesDoNotDependOnWhatWasComputedBefore) {
   InShards shards({test::distorted_camera(), "plumb_bob", {.views = 110}}, kLens);
   std::map<std::string, std::vector<std::vector<double>>> store;
   int computed = 0;

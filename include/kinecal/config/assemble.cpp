@@ -608,10 +608,10 @@ bool add_models(AnyProblem& problem, const StepConfig& step, std::span<const Sam
   return robot;
 }
 
-void give_own_poses(AnyProblem& problem, const Config& config) {
+void give_sample_poses(AnyProblem& problem, const Config& config) {
   std::vector<std::string> joints;
   for (const FreeParamConfig& frame : config.per_sample) joints.push_back(frame.name);
-  problem.give_own_poses(std::move(joints));
+  problem.give_sample_poses(std::move(joints));
 }
 
 /// Prepares the search for unknown poses of a step: the frames, and a few samples, with lines of
@@ -707,7 +707,7 @@ Calibration assemble(const Config& given, const Robot& of_urdf, std::span<const 
   for (const StepConfig& step : config.steps) {
     std::unique_ptr<AnyProblem> problem = make_problem(
         robot, config.base_link, detail::with_bounds(calibration.table, step, diagnostics), frames);
-    detail::give_own_poses(*problem, config);
+    detail::give_sample_poses(*problem, config);
     if (!detail::add_models(*problem, step, samples, diagnostics)) continue;
     (void)detail::add_samples(*problem, samples, diagnostics);
     if (!diagnostics.errors.empty()) continue;

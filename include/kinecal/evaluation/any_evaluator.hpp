@@ -79,9 +79,9 @@ class AnyEvaluator {
                                                          bool derivatives = true,
                                                          Losses losses = Losses::as_given) = 0;
 
-  /// The best poses that samples have of their own, by sample and joint: see AnyProblem::give_own_poses().
+  /// The best poses that samples have of their own, by sample and joint: see AnyProblem::give_sample_poses().
   /// @param values  of all parameters of the table
-  [[nodiscard]] virtual std::vector<std::vector<Pose<double>>> own_poses(ParameterValues values);
+  [[nodiscard]] virtual std::vector<std::vector<Pose<double>>> sample_poses(ParameterValues values);
 };
 
 /// Evaluates all residuals once: see AnyEvaluator::evaluate().

@@ -15,7 +15,7 @@ const bool EigenAligned::KINECAL_LIBRARY_CHECK = true;
 }  // namespace KINECAL_INSTRUCTION_SET
 #endif
 
-KINECAL_INLINE std::vector<std::vector<Pose<double>>> AnyEvaluator::own_poses(ParameterValues) {
+KINECAL_INLINE std::vector<std::vector<Pose<double>>> AnyEvaluator::sample_poses(ParameterValues) {
   return {};
 }
 

@@ -5,7 +5,7 @@
 
 #include "kinecal/evaluation/basic_problem.hpp"
 #include "kinecal/evaluation/evaluator.ipp"
-#include "kinecal/evaluation/own_poses.ipp"
+#include "kinecal/evaluation/sample_poses.ipp"
 #include "kinecal/evaluation/sums/feature_wrenches.ipp"
 #include "kinecal/evaluation/sums/local_sums.ipp"
 #include "kinecal/evaluation/sums/point_wrenches.ipp"
@@ -66,7 +66,7 @@ std::unique_ptr<AnyProblem> BasicProblem<S>::without_samples() const {
 
 template <class S>
 std::unique_ptr<AnyEvaluator> BasicProblem<S>::evaluator(const FreeSet& free, int threads) const {
-  if (!own_poses().empty()) return std::make_unique<OwnPosesEvaluator<S>>(*this, free);
+  if (!sample_poses().empty()) return std::make_unique<SamplePosesEvaluator<S>>(*this, free);
   return std::make_unique<Evaluator<S>>(*this, free, threads);
 }
 

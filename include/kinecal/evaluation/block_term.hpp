@@ -57,8 +57,8 @@ class BlockTerm final : public TermCode<S> {
       sums.residuals.resize(features);
       for (std::size_t i = 0; i < features; ++i) {
         sums.residuals[i] = block_(sides[0].points[i], sides[1].points[i]);
-        const S weight = Block::weight(views, run.first + i);
-        sums.weights[i] = add_cost(views, run.first + i, sums.residuals[i], weight, loss, sums);
+        const S present = Block::present(views, run.first + i);
+        sums.weights[i] = add_cost(views, run.first + i, sums.residuals[i], present, loss, sums);
       }
       sums.point_wrenches.set(sides, sums.weights, sums.residuals);
       sums_of(run, sums).add(sums.point_wrenches);
@@ -67,26 +67,25 @@ class BlockTerm final : public TermCode<S> {
   }
 
   /// The block's sigma over the feature's own; one where the feature has none.
-  [[nodiscard]] static S factor_of(const S& precision, double sigma) {
-    return select(precision == S(0.0), S(1.0), precision * S(sigma));
+  [[nodiscard]] static S factor_of(const S& inverse_sigma, double sigma) {
+    return select(inverse_sigma == S(0.0), S(1.0), inverse_sigma * S(sigma));
   }
 
   /// Adds the cost of a feature.
   /// @returns  the feature's weight in the normal equations
   S add_cost(const Views& views, std::size_t i, const Eigen::Matrix<S, kSize, 1>& residual,
-             const S& weight, const Loss& loss, TermSums<S>& sums) const {
-    const double weight_of_term = views.term->weight;
-    S w2(weight_of_term * weight_of_term);
-    if (const S* precisions = views.precisions) {
-      const S factor = factor_of(precisions[i], views.term->sigma);
+             const S& present, const Loss& loss, TermSums<S>& sums) const {
+    S w2(views.term->weight * views.term->weight);
+    if (const S* inverse_sigmas = views.inverse_sigmas) {
+      const S factor = factor_of(inverse_sigmas[i], views.term->sigma);
       w2 *= factor * factor;
     }
     S squared(0.0);
     for (int m = 0; m < kSize; ++m) squared += residual(m) * residual(m);
     squared *= w2;
     const auto value = loss(squared);
-    sums.twice_cost += weight * value.rho + S(0.0) * squared;  // NaN where infinite
-    return weight * w2 * value.derivative;
+    sums.twice_cost += present * value.rho + S(0.0) * squared;  // NaN where infinite
+    return present * w2 * value.derivative;
   }
 
   [[nodiscard]] static Twists twists(const Views& views, const BodyChains& chains) {
@@ -110,7 +109,7 @@ class BlockTerm final : public TermCode<S> {
     Rows rows;
     for (std::size_t i = run.first; i < run.end; ++i, jacobian += kSize * run.columns.size()) {
       Block::template rows<true>(block_, views, i, at, rows);
-      store(i, rows.residual, rows.weight, out);
+      store(i, rows.residual, rows.present, out);
       write_columns(rows, twists, jacobian);
     }
   }
@@ -124,7 +123,7 @@ class BlockTerm final : public TermCode<S> {
       const std::size_t features = run.end - run.first, columns = run.columns.size();
       for (std::size_t k = 0; k < features; ++k) {
         store(run.first + k, block_(sides[0].points[k], sides[1].points[k]),
-              Block::weight(views, run.first + k), out);
+              Block::present(views, run.first + k), out);
       }
       std::size_t k = 0;
       constexpr std::size_t kAtOnce = kLanes<S> == 1 ? 1 : 4;
@@ -137,9 +136,9 @@ class BlockTerm final : public TermCode<S> {
     }
   }
 
-  static void store(std::size_t i, const Eigen::Matrix<S, kSize, 1>& residual, const S& weight,
+  static void store(std::size_t i, const Eigen::Matrix<S, kSize, 1>& residual, const S& present,
                     BatchRows<S>& out) {
-    out.weight[i] = weight;
+    out.present[i] = present;
     for (int m = 0; m < kSize; ++m) out.residual[i * kSize + std::size_t(m)] = residual(m);
   }
 
@@ -152,7 +151,7 @@ void BlockTerm<B, S>::add_cost(const Views& views, const Loss& loss, TermSums<S>
   Rows rows;
   for (std::size_t i = 0; i < views.features(); ++i) {
     Block::template rows<false>(block_, views, i, Linearization::measured, rows);
-    (void)add_cost(views, i, rows.residual, rows.weight, loss, sums);
+    (void)add_cost(views, i, rows.residual, rows.present, loss, sums);
   }
 }
 
@@ -166,7 +165,7 @@ void BlockTerm<B, S>::add_normal_equations(const Views& views, const Loss& loss,
     Rows rows;
     for (std::size_t i = run.first; i < run.end; ++i) {
       Block::template rows<true>(block_, views, i, Linearization::measured, rows);
-      sums.wrenches.add(rows, add_cost(views, i, rows.residual, rows.weight, loss, sums));
+      sums.wrenches.add(rows, add_cost(views, i, rows.residual, rows.present, loss, sums));
     }
     sums.wrenches.finish();
     sums_of(run, sums).add(sums.wrenches);
@@ -177,19 +176,19 @@ template <ErrorBlock B, class S>
 void BlockTerm<B, S>::evaluate(const Views& views, bool derivatives, Linearization at,
                                BatchRows<S>& out) const {
   const std::size_t features = views.features();
-  out.weight.resize(features);
+  out.present.resize(features);
   out.residual.resize(features * kSize);
   out.factor.clear();
-  if (const S* precisions = views.precisions) {
+  if (const S* inverse_sigmas = views.inverse_sigmas) {
     for (std::size_t i = 0; i < features; ++i) {
-      out.factor.push_back(factor_of(precisions[i], views.term->sigma));
+      out.factor.push_back(factor_of(inverse_sigmas[i], views.term->sigma));
     }
   }
   if (!derivatives) {
     Rows rows;
     for (std::size_t i = 0; i < features; ++i) {
       Block::template rows<false>(block_, views, i, at, rows);
-      store(i, rows.residual, rows.weight, out);
+      store(i, rows.residual, rows.present, out);
     }
     return;
   }

@@ -130,7 +130,7 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
         const Term& term = problem_.term(place.term);
         const TermState& state = terms_[static_cast<std::size_t>(place.term)];
         detail::TermViews<S> views{&term, {}, &state.own, state.runs[l]};
-        views.precisions = batches.of_term(b, place.precisions);
+        views.inverse_sigmas = batches.of_term(b, place.inverse_sigmas);
         views.conditions = batches.of_term(b, place.conditions);
         views.conditions_step = place.conditions_step;
         for (std::size_t i = 0; i < term.sensors.size(); ++i) {

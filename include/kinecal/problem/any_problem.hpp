@@ -45,12 +45,12 @@ class AnyProblem {
   virtual ~AnyProblem() = default;
 
   /// Gives each sample poses of its own of floating joints, which are fitted and not measured: a board that a
-  /// person holds.  They are eliminated in the evaluation (evaluation/own_poses.hpp); Sample::poses says where they
+  /// person holds.  They are eliminated in the evaluation (evaluation/sample_poses.hpp); Sample::poses says where they
   /// start.
   /// @param joints  names of floating joints that are free frames; none of their parameters may be free
   /// @throws std::invalid_argument  if one is no floating joint and free frame
   /// @throws std::logic_error       if samples have been added already
-  void give_own_poses(std::vector<std::string> joints);
+  void give_sample_poses(std::vector<std::string> joints);
 
   /// Adds a sensor of a built-in type.
   /// @throws RobotError        if no chain leads from the base to the sensor
@@ -97,8 +97,8 @@ class AnyProblem {
   [[nodiscard]] const std::string& base() const { return base_; }
   /// Names of the free frames: joints of the robot or virtual frames.
   [[nodiscard]] const std::set<std::string>& frames() const { return frames_; }
-  /// Floating joints of which each sample has a pose of its own: see give_own_poses().
-  [[nodiscard]] const std::vector<std::string>& own_poses() const { return own_poses_; }
+  /// Floating joints of which each sample has a pose of its own: see give_sample_poses().
+  [[nodiscard]] const std::vector<std::string>& sample_poses() const { return sample_poses_; }
   /// The poses that samples have of their own, by sample and joint: where they start.
   [[nodiscard]] const std::vector<std::vector<Pose<double>>>& poses_of_samples() const {
     return poses_of_samples_;
@@ -223,7 +223,7 @@ class AnyProblem {
   ParameterTable table_;
   std::set<std::string> frames_;
   std::vector<std::string> owners_;  ///< of each parameter
-  std::vector<std::string> own_poses_;
+  std::vector<std::string> sample_poses_;
   std::vector<std::vector<Pose<double>>> poses_of_samples_;  ///< by sample and joint
   std::vector<MountedSensor> sensors_;
   std::vector<Term> terms_;

@@ -104,7 +104,8 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
 
 /// 1 / sigma of each feature, 0 for one without a sigma; empty if no feature has one.  Variances of
 /// several sensors add up.  A pixel block takes those of the camera, which are in pixels.
-[[nodiscard]] inline std::vector<double> precisions_of(const Term& term, const Observed& observed) {
+[[nodiscard]] inline std::vector<double> inverse_sigmas_of(const Term& term,
+                                                           const Observed& observed) {
   const auto seen = observations_of(term, observed);
   const auto quantities = term.quantities;
   const bool of_pixels =
@@ -296,7 +297,7 @@ using ComparedFeatures = std::map<int, std::vector<std::size_t>>;
   for (std::size_t s = 0; s < used.size(); ++s) row.add_sensor(used[s] ? &*observed[s] : nullptr);
   for (const auto& [t, features] : compared) {
     const TermConditions conditions = conditions_of(term(t), sensors, sample, features);
-    row.add_term(t, precisions_of(term(t), observed), conditions.values, conditions.step);
+    row.add_term(t, inverse_sigmas_of(term(t), observed), conditions.values, conditions.step);
   }
   return row;
 }
@@ -392,9 +393,9 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   added.row = static_cast<std::size_t>(use.samples++);
   residuals_ += added.residuals;
   samples_.push_back(std::move(added));
-  if (own_poses_.empty()) return;
+  if (sample_poses_.empty()) return;
   std::vector<Pose<double>>& poses = poses_of_samples_.emplace_back();
-  for (const std::string& joint : own_poses_) {
+  for (const std::string& joint : sample_poses_) {
     const auto pose = sample.poses.find(joint);
     poses.push_back(pose == sample.poses.end() ? Pose<double>{} : pose->second);
   }
@@ -410,7 +411,7 @@ KINECAL_INLINE void AnyProblem::exclude(const std::set<int>& samples) {
     AddedSample& sample = samples_[static_cast<std::size_t>(i)];
     if (stays) {
       kept.push_back(std::move(sample));
-      if (!own_poses_.empty()) poses.push_back(poses_of_samples_[static_cast<std::size_t>(i)]);
+      if (!sample_poses_.empty()) poses.push_back(poses_of_samples_[static_cast<std::size_t>(i)]);
     } else {
       residuals_ -= sample.residuals;
     }
@@ -610,7 +611,7 @@ KINECAL_INLINE std::vector<int> AnyProblem::touched_parameters() const {
     }
   }
   touched.erase(-1);
-  for (const std::string& joint : own_poses_) {
+  for (const std::string& joint : sample_poses_) {
     for (const auto axis : kFrameAxes) touched.erase(table_.find(parameter_name(joint, axis)));
   }
   return {touched.begin(), touched.end()};
@@ -634,12 +635,12 @@ KINECAL_INLINE AnyProblem::AnyProblem(const AnyProblem& other, WithoutSamples)
       table_(other.table_),
       frames_(other.frames_),
       owners_(other.owners_),
-      own_poses_(other.own_poses_),
+      sample_poses_(other.sample_poses_),
       sensors_(other.sensors_),
       terms_(other.terms_),
       priors_(other.priors_) {}
 
-KINECAL_INLINE void AnyProblem::give_own_poses(std::vector<std::string> joints) {
+KINECAL_INLINE void AnyProblem::give_sample_poses(std::vector<std::string> joints) {
   check_no_samples();
   for (const std::string& joint : joints) {
     const bool floats = robot_.has_joint(joint) && robot_.joint(joint).type == JointType::floating;
@@ -647,7 +648,7 @@ KINECAL_INLINE void AnyProblem::give_own_poses(std::vector<std::string> joints) 
     throw std::invalid_argument("'" + joint + "' cannot have a pose in each sample: it is no " +
                                 (floats ? "free frame" : "floating joint"));
   }
-  own_poses_ = std::move(joints);
+  sample_poses_ = std::move(joints);
 }
 
 KINECAL_INLINE void AnyProblem::set_sigma(int term, double sigma) {

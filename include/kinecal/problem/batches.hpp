@@ -4,8 +4,8 @@
 // the form the sensors need.  Samples of one layout share batches, one lane each: a structure of
 // arrays. (Same layout: the same sensors observed the same number of features in the same frames,
 // and the same terms apply.)  All batches of a layout are contiguous in memory.  A lane without a
-// sample repeats the first one with weight zero; a NaN feature repeats another one with weight
-// zero.  So one code path evaluates everything, without a remainder loop.
+// sample repeats the first one, a NaN feature another one; both are not present: they count zero
+// times.  So one code path evaluates everything, without a remainder loop.
 // Source: ARCHITECTURE.md, ideas 4 (no trigonometry in the loop) and 5 (packets over samples).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -157,7 +157,7 @@ class Batches {
   [[nodiscard]] BatchObservation<S> observation(std::size_t batch, std::size_t sensor) const {
     return {numbers_.data() + batch * layout_.size, &*layout_.sensors[sensor]};
   }
-  /// Numbers of a term in a batch: TermLayout::precisions or conditions; nullptr: it has none.
+  /// Numbers of a term in a batch: TermLayout::inverse_sigmas or conditions; nullptr: it has none.
   [[nodiscard]] const S* of_term(std::size_t batch, std::size_t offset) const {
     return offset == kAbsent ? nullptr : numbers_.data() + batch * layout_.size + offset;
   }

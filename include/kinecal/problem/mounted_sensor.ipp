@@ -14,7 +14,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// Replaces NaN features, whose weight is zero, by valid ones: zero times NaN is NaN.
+/// Replaces NaN features, which count zero times, by valid ones: zero times NaN is NaN.
 inline void replace_unusable(ObservationNumbers& all) {
   const auto first = std::find(all.usable.begin(), all.usable.end(), 1.0);
   if (first == all.usable.end()) return;  // then no error block uses the observation

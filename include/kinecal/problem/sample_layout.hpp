@@ -31,9 +31,10 @@ struct ObservationLayout {
 
 /// Offsets of a term's inputs in a row, besides the observations of its sensors.
 struct TermLayout {
-  int term = 0;                      ///< its index in the problem
-  std::size_t precisions = kAbsent;  ///< first number, or kAbsent if no feature has its own sigma
-  std::size_t conditions = 0;        ///< first number
+  int term = 0;  ///< its index in the problem
+  std::size_t inverse_sigmas =
+      kAbsent;                 ///< first number, or kAbsent if no feature has its own sigma
+  std::size_t conditions = 0;  ///< first number
   std::size_t conditions_step =
       0;  ///< from a feature's to the next one's; zero: they are the sample's
 
@@ -58,10 +59,10 @@ struct SampleRow {
   /// Appends the next sensor's observation; nullptr: none.
   void add_sensor(const ObservationNumbers* seen);
   /// Appends what a term takes.
-  /// @param precisions  of each feature: 1 / sigma, or 0 if it has none; empty: none has one
+  /// @param inverse_sigmas  of each feature: 1 / sigma, or 0 if it has none; empty: none has one
   /// @param conditions  those that the block takes, in its order: of each feature, or of the sample
   /// @param step        number of those of a feature; zero: they are the sample's
-  void add_term(int term, const std::vector<double>& precisions,
+  void add_term(int term, const std::vector<double>& inverse_sigmas,
                 const std::vector<double>& conditions, std::size_t step);
 
  private:

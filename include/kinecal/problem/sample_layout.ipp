@@ -32,9 +32,9 @@ KINECAL_INLINE void SampleRow::add_sensor(const ObservationNumbers* seen) {
   place.usable = append(misses_some ? seen->usable : std::vector{1.0});
 }
 
-KINECAL_INLINE void SampleRow::add_term(int term, const std::vector<double>& precisions,
+KINECAL_INLINE void SampleRow::add_term(int term, const std::vector<double>& inverse_sigmas,
                                         const std::vector<double>& conditions, std::size_t step) {
-  const std::size_t of_features = precisions.empty() ? kAbsent : append(precisions);
+  const std::size_t of_features = inverse_sigmas.empty() ? kAbsent : append(inverse_sigmas);
   layout.terms.push_back({term, of_features, append(conditions), step});
 }
 

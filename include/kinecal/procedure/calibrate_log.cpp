@@ -360,7 +360,7 @@ class LogProcedure {
   /// leaves none out.
   void set_limits() {
     const bool leaves_out = !options_.keep_outliers && !explains_more(last()) &&
-                            steps().back().problem->own_poses().empty();
+                            steps().back().problem->sample_poses().empty();
     if (!leaves_out) return;
     limits_.assign(last().noise.size(), HUGE_VAL);
     for (const CaptureError& error : last().captures) {

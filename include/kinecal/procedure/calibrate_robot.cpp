@@ -115,10 +115,10 @@ void leave_open(PreparedCalibration& prepared, Search search, bool is_proposed) 
 }
 
 /// Each sample with its own poses where the result has them.
-void take_own_poses(const AnyProblem& problem, std::vector<Sample>& samples) {
+void take_sample_poses(const AnyProblem& problem, std::vector<Sample>& samples) {
   for (std::size_t s = 0; s < problem.poses_of_samples().size(); ++s) {
-    for (std::size_t f = 0; f < problem.own_poses().size(); ++f) {
-      samples[s].poses[problem.own_poses()[f]] = problem.poses_of_samples()[s][f];
+    for (std::size_t f = 0; f < problem.sample_poses().size(); ++f) {
+      samples[s].poses[problem.sample_poses()[f]] = problem.poses_of_samples()[s][f];
     }
   }
 }
@@ -177,7 +177,7 @@ void fit(const CalibrationOptions& options, CalibratedRobot& calibrated) {
   JudgedResult judged =
       calibrate_and_judge(setup.calibration, setup.samples, procedure_of(setup, options));
   calibrated.samples = used_samples(judged, setup.samples);
-  take_own_poses(*setup.calibration.steps.back().problem, calibrated.samples);
+  take_sample_poses(*setup.calibration.steps.back().problem, calibrated.samples);
   judge_files(setup.calibration, calibrated.samples, judged);
   calibrated.left_out_samples.clear();
   for (const LeftOutSample& left : judged.left_out) {
@@ -187,7 +187,7 @@ void fit(const CalibrationOptions& options, CalibratedRobot& calibrated) {
       findings_of(setup.robot, setup.calibration, std::move(judged), calibrated.samples);
   calibrated.images = images_of(*setup.config);
   calibrated.lenses = lenses_of(*setup.config);
-  calibrated.has_own_poses = !setup.config->per_sample.empty();
+  calibrated.has_sample_poses = !setup.config->per_sample.empty();
 }
 
 /// Searches, and calibrates with what was found; again without samples that do not fit.

@@ -203,8 +203,8 @@ void judge_read_back(CalibratedRobot& calibrated, const CalibrationOptions& opti
   const PreparedCalibration& setup = calibrated.setup;
   ReadBack& found = calibrated.read_back;
   found = {.judged = options.reader.value_or(Reader::urdf)};
-  const bool has_own_poses = !setup.config->per_sample.empty();  // of joints that no URDF has
-  if (setup.urdf_text.empty() || has_own_poses || !calibrated.result.converged) return;
+  const bool has_sample_poses = !setup.config->per_sample.empty();  // of joints that no URDF has
+  if (setup.urdf_text.empty() || has_sample_poses || !calibrated.result.converged) return;
   detail::read_files(calibrated, options, found);
   if (found.fits.empty() || calibrated.assessments.empty()) return;
   constexpr double kWorse = 1.5;

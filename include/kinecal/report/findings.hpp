@@ -32,7 +32,7 @@ struct Findings : JudgedResult {
   ReadBack read_back = {};     ///< what those see who read the files
   RecordedPoses poses = {};    ///< of the samples that were used
   ProgramCall call = {};       ///< how the program was called
-  bool has_own_poses = false;  ///< a target has a pose of its own in each sample
+  bool has_sample_poses = false;  ///< a target has a pose of its own in each sample
   std::int64_t drawn =
       0;  ///< samples by which a log was judged where all at once are needed; 0: all
 

@@ -131,7 +131,7 @@ std::string next_step(const Findings& findings) {
     return "find out what else is wrong" + detail::with_inputs("identify", call.inputs);
   }
   if (judgement.verdict == Grade::good) {
-    if (findings.has_own_poses) {  // nothing says where the target is in new samples
+    if (findings.has_sample_poses) {  // nothing says where the target is in new samples
       return "use the files in " + (call.output.empty() ? "the output" : call.output) +
              ", and calibrate other samples, too: the results should agree";
     }

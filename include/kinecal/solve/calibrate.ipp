@@ -138,10 +138,10 @@ KINECAL_INLINE CalibrationResult calibrate(const Calibration& calibration, const
         solved.final_cost = hold_undetermined(*step.problem, step.free, start, values);
       }
     }
-    if (!step.problem->own_poses().empty()) {
+    if (!step.problem->sample_poses().empty()) {
       step.problem->set_poses_of_samples(
           step.problem->evaluator(step.free, 1)
-              ->own_poses({values.data(), static_cast<std::size_t>(values.size())}));
+              ->sample_poses({values.data(), static_cast<std::size_t>(values.size())}));
     }
     solved.name = step.name;
     detail::add_step(std::move(solved), step.free, result);

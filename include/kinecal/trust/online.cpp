@@ -112,14 +112,15 @@ inline void OnlineCalibration::Impl::step_to_minimum(AnyEvaluator& evaluator) {
   }
   hessian = at.hessian;
   estimate_noise(evaluator, at.cost);
-  problem->set_poses_of_samples(evaluator.own_poses(values));
+  problem->set_poses_of_samples(evaluator.sample_poses(values));
 }
 
 inline void OnlineCalibration::Impl::estimate_noise(AnyEvaluator& evaluator, double cost) {
   const detail::Spectrum spectrum(hessian);
   const auto rank = static_cast<int>(spectrum.singular.size() - spectrum.null);
   const int of_priors = static_cast<int>(problem->priors().size()) * Prior::kRows;
-  const double used = problem->own_poses().empty() ? 0.0 : detail::used_by_poses(evaluator, values);
+  const double used =
+      problem->sample_poses().empty() ? 0.0 : detail::used_by_poses(evaluator, values);
   freedom = problem->num_residuals() - of_priors - rank - static_cast<int>(std::lround(used));
   const double of_features = cost - detail::prior_equations(*problem, free, values).cost;
   noise2 = freedom > 0 ? std::max(0.0, 2.0 * of_features / freedom) : 0.0;
@@ -380,7 +381,7 @@ const std::vector<double>& OnlineCalibration::values() const {
 std::optional<NextMove> OnlineCalibration::next_move(double step) const {
   const Impl& known = *impl_;
   if (known.samples.empty() || known.freedom <= 0) return std::nullopt;
-  if (!known.problem->own_poses().empty()) return std::nullopt;  // a person moves, too
+  if (!known.problem->sample_poses().empty()) return std::nullopt;  // a person moves, too
   auto candidates = known.candidates(step);
   const auto trials = known.make();
   for (const auto& candidate : candidates) trials->add_sample(candidate.second);

@@ -18,7 +18,7 @@ Grade Limits::judged(double figure) const {
 
 double robot_size(const AnyProblem& problem) {
   constexpr double kArm = 1.0;
-  const std::vector<std::string>& own = problem.own_poses();
+  const std::vector<std::string>& own = problem.sample_poses();
   const auto is_reported = [&](const ChainJoint& joint) {
     return !joint.floating.empty() &&
            std::find(own.begin(), own.end(), joint.floating) == own.end();
@@ -44,7 +44,7 @@ Limits plausible_length_change(const AnyProblem& problem, const Joint& joint) {
 }
 
 bool is_unknown_lens(const AnyProblem& problem, int parameter) {
-  const std::size_t first = problem.own_poses().empty() ? kIntrinsics : 0;
+  const std::size_t first = problem.sample_poses().empty() ? kIntrinsics : 0;
   return std::any_of(problem.sensors().begin(), problem.sensors().end(), [&](const auto& sensor) {
     const std::vector<int>& own = sensor.parameters();
     const auto from = own.begin() + static_cast<std::ptrdiff_t>(std::min(first, own.size()));

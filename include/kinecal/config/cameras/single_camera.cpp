@@ -28,7 +28,7 @@ using Fisheye = LensCamera<Equidistant>;
   auto problem = make_problem(
       Robot("camera", {{"board", JointType::floating, "camera", "board", {}, {}, {}, {}}}),
       "camera", table, {"board"});
-  problem->give_own_poses({"board"});
+  problem->give_sample_poses({"board"});
   problem->add_built_in(ChainPoint{}, {"board", "board"});
   problem->add_built_in(Fisheye{ImageKind::raw}, {"camera", "camera"});
   constexpr double kScale = 3.0;  // pixels, beyond which a corner counts less

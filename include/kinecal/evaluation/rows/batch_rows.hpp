@@ -12,7 +12,7 @@ namespace kinecal::detail {
 /// Residuals of one term in a batch of samples, and their derivatives.
 template <class S>
 struct BatchRows {
-  std::vector<S> weight;    ///< of each feature: one, or zero where it is missing
+  std::vector<S> present;   ///< of each feature: one, or zero where it is missing
   std::vector<S> factor;    ///< of each feature: see TermResiduals; empty: all are one
   std::vector<S> residual;  ///< of each feature, unweighted
   std::vector<S> jacobian;  ///< of each feature, column-major; values after the last one are stale
@@ -21,15 +21,15 @@ struct BatchRows {
   /// @param columns  of the whole Jacobian; negative: residuals only
   void unpack(std::span<const FeatureRun> runs, int feature_size, int lane_index, int columns,
               TermResiduals& out) const {
-    Eigen::Index present = 0;
-    for (const S& w : weight) present += lane(w, lane_index) > 0.0 ? 1 : 0;
-    out.resize(present * feature_size, columns);
+    Eigen::Index count = 0;
+    for (const S& is : present) count += lane(is, lane_index) > 0.0 ? 1 : 0;
+    out.resize(count * feature_size, columns);
     Eigen::Index row = 0;
     const auto size = static_cast<std::size_t>(feature_size);
     std::size_t value = 0;
     for (const FeatureRun& run : runs) {
       for (std::size_t feature = run.first; feature < run.end; ++feature) {
-        const bool there = lane(weight[feature], lane_index) > 0.0;
+        const bool there = lane(present[feature], lane_index) > 0.0;
         for (int m = 0; there && m < feature_size; ++m) {
           out.residual(row + m) = lane(residual[feature * size + std::size_t(m)], lane_index);
           if (!factor.empty()) out.factor(row + m) = lane(factor[feature], lane_index);

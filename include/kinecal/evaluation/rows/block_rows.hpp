@@ -23,7 +23,7 @@ class BlockRows {
   using Rows = FeatureRows<S, kSize, static_cast<int>(kBodies)>;  ///< the result
 
   /// One if all sensors observed feature i, else zero; lane by lane.
-  [[nodiscard]] static S weight(const Views& views, std::size_t i) {
+  [[nodiscard]] static S present(const Views& views, std::size_t i) {
     S all = views[0].observation().usable(i);
     for (std::size_t s = 1; s < kBodies; ++s) all *= views[s].observation().usable(i);
     return all;
@@ -37,14 +37,14 @@ class BlockRows {
       plane_rows<B, S>(block, views, kDerivatives, rows);
     } else {
       rows.own = 0;
-      rows.weight = weight(views, i);
+      rows.present = present(views, i);
       if constexpr (PixelBlock<B>) {
         pixel_rows<kDerivatives>(block, views, i, rows);
       } else {
         placed_rows<kDerivatives>(block, views, i, at, rows);
       }
       // A missing feature may give NaN; it must not count.
-      const auto missing = rows.weight == S(0.0);
+      const auto missing = rows.present == S(0.0);
       for (int m = 0; m < kSize; ++m) {
         rows.residual(m) = select(missing, S(0.0), rows.residual(m));
       }

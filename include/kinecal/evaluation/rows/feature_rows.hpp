@@ -23,7 +23,7 @@ namespace kinecal::detail {
 /// Residual of one feature and its derivatives.
 template <class S, int M, int Bodies>
 struct FeatureRows {
-  S weight{1.0};                    ///< one, or zero where the feature is missing
+  S present{1.0};                   ///< one, or zero where the feature is missing
   Eigen::Matrix<S, M, 1> residual;  ///< (M) unweighted
   std::array<Eigen::Matrix<S, M, 6>, Bodies> by_body;   ///< by linear, by angular
   std::array<Eigen::Matrix<S, M, 1>, kMostOwn> by_own;  ///< by each free parameter of sensors and

@@ -46,7 +46,7 @@ class PlaneLane {
 
   [[nodiscard]] Rows rows(bool derivatives) const {
     Rows rows;
-    rows.weight = empty_ ? 0.0 : 1.0;
+    rows.present = empty_ ? 0.0 : 1.0;
     rows.residual.setZero();
     for (auto& body : rows.by_body) body.setZero();
     for (auto& of_own : rows.by_own) of_own.setZero();
@@ -100,7 +100,7 @@ void plane_rows(const B& block, const TermViews<S>& views, bool derivatives,
   rows.own = derivatives ? views.num_own() : 0;
   for (int i = 0; i < kLanes<S>; ++i) {
     const auto one = PlaneLane<B, S>(block, views, i).rows(derivatives);
-    set_lane(rows.weight, i, one.weight);
+    set_lane(rows.present, i, one.present);
     for (int m = 0; m < kResiduals<B>; ++m) {
       set_lane(rows.residual(m), i, one.residual(m));
       for (std::size_t s = 0; s < 2; ++s) {

@@ -43,7 +43,7 @@ struct TermViews {
   const OwnParameters* own = nullptr;                       ///< of the block itself
   std::span<const FeatureRun> runs;                         ///< of the features, in their order
   /// Of each feature, lane by lane: 1 / sigma, or 0 if it has none of its own; nullptr: none has one.
-  const S* precisions = nullptr;
+  const S* inverse_sigmas = nullptr;
   const S* conditions = nullptr;  ///< those that the block takes, lane by lane
   std::size_t conditions_step =
       0;  ///< from a feature's to the next one's; zero: they are the sample's

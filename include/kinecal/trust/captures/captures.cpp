@@ -102,7 +102,7 @@ class CaptureSearch {
   }
 
   [[nodiscard]] std::vector<CaptureError> find() {
-    if (!problem_.own_poses().empty()) {
+    if (!problem_.sample_poses().empty()) {
       fit_without(bad_);
       mark(Tail::as_seen);
       bad_ = far_samples(problem_, fit_, sigma_);

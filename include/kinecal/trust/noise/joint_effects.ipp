@@ -20,7 +20,7 @@ namespace kinecal::detail {
   for (const MountedSensor& sensor : problem.sensors()) {
     for (const SampledChain& chain : sensor.chains()) {
       for (const ChainJoint& joint : chain.chain().joints) {
-        const std::vector<std::string>& own = problem.own_poses();
+        const std::vector<std::string>& own = problem.sample_poses();
         const bool is_own = std::find(own.begin(), own.end(), joint.floating) != own.end();
         if (joint.type == JointType::fixed || is_own) continue;
         joints[joint.drive.joint] = turns(joint.type) ? kRadians : kMetres;

@@ -31,8 +31,8 @@ namespace {
 }
 
 /// True if a sensor is at a pose that each sample has of its own: where it is says nothing of the robot.
-[[nodiscard]] bool has_own_pose(const AnyProblem& problem, const std::vector<int>& sensors) {
-  const std::vector<std::string>& own = problem.own_poses();
+[[nodiscard]] bool has_sample_pose(const AnyProblem& problem, const std::vector<int>& sensors) {
+  const std::vector<std::string>& own = problem.sample_poses();
   return std::any_of(sensors.begin(), sensors.end(), [&](int s) {
     const auto& joints =
         problem.sensors()[static_cast<std::size_t>(s)].chains().front().chain().joints;
@@ -57,7 +57,7 @@ std::optional<std::pair<FrameOnRobot, FrameOnRobot>> compared_frames(
       const auto& first = problem.sensors()[static_cast<std::size_t>(sensors[0])];
       if (first.sensor().in_own_frame()) std::swap(one, other);
     }
-    const bool is_own = detail::has_own_pose(problem, sensors);
+    const bool is_own = detail::has_sample_pose(problem, sensors);
     if (one.name() != other.name() && !is_own) return std::pair(one, other);
   }
   return std::nullopt;

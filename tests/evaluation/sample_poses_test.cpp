@@ -76,7 +76,7 @@ struct Rig {
         board{"board", JointType::floating, "left", "board", {}, {}, {}, {}};
     auto made = std::make_unique<Problem>(Robot("rig", {right, board}), "left", table,
                                           std::set<std::string>{"right_joint", "board"});
-    if (own) made->give_own_poses({"board"});
+    if (own) made->give_sample_poses({"board"});
     made->add_sensor(ChainPoint{}, {"board", "board"});
     made->add_sensor(LensCamera<PlumbBob>{}, {"left", "left"});
     made->add_sensor(LensCamera<PlumbBob>{}, {"right", "right"});
@@ -111,7 +111,7 @@ std::vector<double> values_of(const AnyProblem& problem, double size) {
 
 /// The normal equations of each sample alone, with its board as parameters, at the fitted poses: their Schur
 /// complements add up to those of the whole.
-TEST(OwnPoses, AreTheSchurComplementOfTheLargeProblem) {
+TEST(SamplePoses, AreTheSchurComplementOfTheLargeProblem) {
   for (const Loss loss : {Loss{}, Loss{LossType::huber, 0.8}}) {
     const Rig rig(5);
     const auto own = rig.problem(true, loss);
@@ -119,7 +119,7 @@ TEST(OwnPoses, AreTheSchurComplementOfTheLargeProblem) {
     const std::vector<double> values = values_of(*own, 0.01);
     const auto evaluator = own->evaluator(free);
     const NormalEquations whole = evaluator->normal_equations(values);
-    const auto poses = evaluator->own_poses(values);
+    const auto poses = evaluator->sample_poses(values);
     double cost = 0.0;
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(5);
     Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(5, 5);
@@ -144,7 +144,7 @@ TEST(OwnPoses, AreTheSchurComplementOfTheLargeProblem) {
 }
 
 /// The gradient is that of the cost at the best poses.
-TEST(OwnPoses, TheGradientIsThatOfTheBestCost) {
+TEST(SamplePoses, TheGradientIsThatOfTheBestCost) {
   const Rig rig(6);
   const auto problem = rig.problem(true);
   const FreeSet free = Rig::free_of(*problem);
@@ -164,7 +164,7 @@ TEST(OwnPoses, TheGradientIsThatOfTheBestCost) {
   }
 }
 
-TEST(OwnPoses, RowsSayHowMuchThePosesUseUp) {
+TEST(SamplePoses, RowsSayHowMuchThePosesUseUp) {
   const Rig rig(4);
   const auto problem = rig.problem(true);
   double used = 0.0;
@@ -180,7 +180,7 @@ TEST(OwnPoses, RowsSayHowMuchThePosesUseUp) {
   EXPECT_EQ(rows, problem->num_residuals());
 }
 
-TEST(OwnPoses, SamplesCanBeLeftOut) {
+TEST(SamplePoses, SamplesCanBeLeftOut) {
   const Rig rig(6);
   const auto all = rig.problem(true);
   Rig few(0);
@@ -193,7 +193,7 @@ TEST(OwnPoses, SamplesCanBeLeftOut) {
               some->evaluator(free)->normal_equations(values).cost, 1e-9);
 }
 
-TEST(OwnPoses, WhatCannotBeIsRefused) {
+TEST(SamplePoses, WhatCannotBeIsRefused) {
   const Rig rig(1);
   const auto problem = rig.problem(true);
   EXPECT_THROW((void)problem->evaluator(Rig::free_of(*problem, true)), std::invalid_argument)
@@ -201,8 +201,8 @@ TEST(OwnPoses, WhatCannotBeIsRefused) {
   ParameterTable table;
   add_parameters(table, "right_joint", kFrameParameters);
   Problem other(problem->robot(), "left", table, {"right_joint"});
-  EXPECT_THROW(other.give_own_poses({"right_joint"}), std::invalid_argument) << "it is fixed";
-  EXPECT_THROW(other.give_own_poses({"bord"}), std::invalid_argument);
+  EXPECT_THROW(other.give_sample_poses({"right_joint"}), std::invalid_argument) << "it is fixed";
+  EXPECT_THROW(other.give_sample_poses({"bord"}), std::invalid_argument);
 }
 
 }  // namespace

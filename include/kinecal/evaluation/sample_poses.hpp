@@ -32,20 +32,20 @@ namespace detail {
 
 /// Where the numbers of a pose stand in a layout: of each chain that leads over it.
 struct PosePlace {
-  std::size_t frame = 0;  ///< index in AnyProblem::own_poses()
+  std::size_t frame = 0;  ///< index in AnyProblem::sample_poses()
   /// Offsets of its six coordinates in a row.
   std::array<std::size_t, 6> offsets{};
 };
 
 /// The normal equations of a sample by its own poses.
-struct OwnPoseSums {
+struct SamplePoseSums {
   Eigen::MatrixXd hessian;   ///< (poses x poses) L^T W L
   Eigen::VectorXd gradient;  ///< (poses) L^T W r
   double cost = 0.0;         ///< of its error blocks, losses included
   Eigen::Index rows = 0;     ///< number of residuals
 
   /// All zero.
-  explicit OwnPoseSums(int poses)
+  explicit SamplePoseSums(int poses)
       : hessian(Eigen::MatrixXd::Zero(poses, poses)), gradient(Eigen::VectorXd::Zero(poses)) {}
   /// The step to the minimum, shortened by the damping of Levenberg and Marquardt.
   /// @returns  (poses)
@@ -58,12 +58,12 @@ struct OwnPoseSums {
 
 /// Evaluates a problem whose samples have poses of their own, in S.
 template <class S>
-class OwnPosesEvaluator final : public AnyEvaluator {
+class SamplePosesEvaluator final : public AnyEvaluator {
  public:
   /// @param problem  must outlive the evaluator; do not add samples meanwhile
   /// @param free     the columns of the Jacobian, none of them of such a pose
   /// @throws std::invalid_argument  if a free parameter does not belong to the problem
-  OwnPosesEvaluator(const BasicProblem<S>& problem, const FreeSet& free);
+  SamplePosesEvaluator(const BasicProblem<S>& problem, const FreeSet& free);
 
   [[nodiscard]] const BasicProblem<S>& problem() const override { return problem_; }
   [[nodiscard]] const FreeSet& free() const override { return free_; }
@@ -73,7 +73,8 @@ class OwnPosesEvaluator final : public AnyEvaluator {
   [[nodiscard]] NormalEquations normal_equations(ParameterValues values, bool derivatives = true,
                                                  Losses losses = Losses::as_given) override;
 
-  [[nodiscard]] std::vector<std::vector<Pose<double>>> own_poses(ParameterValues values) override;
+  [[nodiscard]] std::vector<std::vector<Pose<double>>> sample_poses(
+      ParameterValues values) override;
 
  private:
   using Poses = std::vector<std::vector<Pose<double>>>;  ///< of each sample and frame
@@ -93,13 +94,13 @@ class OwnPosesEvaluator final : public AnyEvaluator {
   /// Moves a sample in the batches to its current poses.
   void place(std::size_t sample);
   /// The normal equations of each sample at its current poses.
-  [[nodiscard]] std::vector<detail::OwnPoseSums> sums(ParameterValues values, Losses losses);
+  [[nodiscard]] std::vector<detail::SamplePoseSums> sums(ParameterValues values, Losses losses);
   /// The same at these poses, which become the current ones.
-  [[nodiscard]] std::vector<detail::OwnPoseSums> sums_at(Poses poses, ParameterValues values,
-                                                         Losses losses);
+  [[nodiscard]] std::vector<detail::SamplePoseSums> sums_at(Poses poses, ParameterValues values,
+                                                            Losses losses);
   /// Begins at the poses of the best evaluation, or where the last derivatives say that they go, whichever is better in
   /// a sample.
-  [[nodiscard]] std::vector<detail::OwnPoseSums> start(ParameterValues values, Losses losses);
+  [[nodiscard]] std::vector<detail::SamplePoseSums> start(ParameterValues values, Losses losses);
   /// Fits all poses at these values.
   void fit(ParameterValues values, Losses losses);
   /// The rows at the fitted poses, with their derivatives by the free parameters: J'.

@@ -1,4 +1,4 @@
-// Definitions of own_poses.hpp, for a scalar S.
+// Definitions of sample_poses.hpp, for a scalar S.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,19 +11,19 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/evaluation/own_poses.hpp"
+#include "kinecal/evaluation/sample_poses.hpp"
 #include "kinecal/kinematics/floating_joint.hpp"
 
 namespace kinecal {
 
 namespace detail {
 
-// The parts of own_poses.ipp that do not depend on the scalar.
+// The parts of sample_poses.ipp that do not depend on the scalar.
 
 /// Table indices of the parameters of the poses that samples have of their own: six of each frame.
-[[nodiscard]] inline FreeSet own_pose_parameters(const AnyProblem& problem) {
+[[nodiscard]] inline FreeSet sample_pose_parameters(const AnyProblem& problem) {
   std::vector<int> all;
-  for (const std::string& frame : problem.own_poses()) {
+  for (const std::string& frame : problem.sample_poses()) {
     for (const auto axis : kFrameAxes) {
       all.push_back(problem.table().find(parameter_name(frame, axis)));
     }
@@ -50,11 +50,11 @@ namespace detail {
       if (first == kAbsent) continue;
       const std::size_t stride = 2 + most_effects(chains[c].parameters());
       const std::vector<ChainJoint>& joints = chains[c].chain().joints;
-      for (std::size_t f = 0; f < problem.own_poses().size(); ++f) {
+      for (std::size_t f = 0; f < problem.sample_poses().size(); ++f) {
         PosePlace place{f, {}};
         bool found = false;
         for (std::size_t j = 0; j < joints.size(); ++j) {
-          if (joints[j].floating != problem.own_poses()[f]) continue;
+          if (joints[j].floating != problem.sample_poses()[f]) continue;
           place.offsets[floating_coordinate(joints[j].name)->index] = first + stride * j;
           found = true;
         }
@@ -108,7 +108,7 @@ inline void move(std::vector<Pose<double>>& poses, const Eigen::VectorXd& step) 
          eigen.eigenvectors().transpose() * per_length.asDiagonal();
 }
 
-inline Eigen::VectorXd OwnPoseSums::step(double damping) const {
+inline Eigen::VectorXd SamplePoseSums::step(double damping) const {
   const Eigen::VectorXd per_length = column_lengths(hessian).cwiseInverse();
   Eigen::MatrixXd scaled = per_length.asDiagonal() * hessian * per_length.asDiagonal();
   constexpr double kNoCurvature = 1e-12;  // of unit columns
@@ -116,7 +116,7 @@ inline Eigen::VectorXd OwnPoseSums::step(double damping) const {
   return per_length.cwiseProduct(scaled.ldlt().solve(-per_length.cwiseProduct(gradient)));
 }
 
-inline double OwnPoseSums::decrease(const Eigen::VectorXd& change) const {
+inline double SamplePoseSums::decrease(const Eigen::VectorXd& change) const {
   return -gradient.dot(change) - 0.5 * change.dot(hessian * change);
 }
 
@@ -140,10 +140,10 @@ struct Damping {
 
 }  // namespace detail
 
-// How OwnPosesEvaluator fits the poses of samples.
+// How SamplePosesEvaluator fits the poses of samples.
 
 template <class S>
-void OwnPosesEvaluator<S>::place(std::size_t sample) {
+void SamplePosesEvaluator<S>::place(std::size_t sample) {
   const Place& place = places_[sample];
   for (const detail::PosePlace& of : offsets_[place.layout]) {
     const std::array<double, 6> at = floating_positions(now_[sample][of.frame]);
@@ -156,10 +156,11 @@ void OwnPosesEvaluator<S>::place(std::size_t sample) {
 }
 
 template <class S>
-std::vector<detail::OwnPoseSums> OwnPosesEvaluator<S>::sums(ParameterValues values, Losses losses) {
-  std::vector<detail::OwnPoseSums> all(now_.size(), detail::OwnPoseSums(own_.size()));
+std::vector<detail::SamplePoseSums> SamplePosesEvaluator<S>::sums(ParameterValues values,
+                                                                  Losses losses) {
+  std::vector<detail::SamplePoseSums> all(now_.size(), detail::SamplePoseSums(own_.size()));
   (void)by_own_->evaluate(values, true, [&](int t, int sample, const TermResiduals& rows) {
-    detail::OwnPoseSums& of = all[static_cast<std::size_t>(sample)];
+    detail::SamplePoseSums& of = all[static_cast<std::size_t>(sample)];
     const Eigen::VectorXd w2 = detail::squared_weights(problem_.term(t), rows, losses, of.cost);
     const Eigen::MatrixXd weighted = w2.asDiagonal() * rows.jacobian;
     of.hessian.noalias() += rows.jacobian.transpose() * weighted;
@@ -170,17 +171,18 @@ std::vector<detail::OwnPoseSums> OwnPosesEvaluator<S>::sums(ParameterValues valu
 }
 
 template <class S>
-std::vector<detail::OwnPoseSums> OwnPosesEvaluator<S>::sums_at(Poses poses, ParameterValues values,
-                                                               Losses losses) {
+std::vector<detail::SamplePoseSums> SamplePosesEvaluator<S>::sums_at(Poses poses,
+                                                                     ParameterValues values,
+                                                                     Losses losses) {
   now_ = std::move(poses);
   for (std::size_t s = 0; s < now_.size(); ++s) place(s);
   return sums(values, losses);
 }
 
 template <class S>
-std::vector<detail::OwnPoseSums> OwnPosesEvaluator<S>::start(ParameterValues values,
-                                                             Losses losses) {
-  std::vector<detail::OwnPoseSums> at = sums_at(best_, values, losses);
+std::vector<detail::SamplePoseSums> SamplePosesEvaluator<S>::start(ParameterValues values,
+                                                                   Losses losses) {
+  std::vector<detail::SamplePoseSums> at = sums_at(best_, values, losses);
   if (known_.by_free.empty()) return at;
   Eigen::VectorXd change(free_.size());
   for (Eigen::Index i = 0; i < change.size(); ++i) {
@@ -191,7 +193,7 @@ std::vector<detail::OwnPoseSums> OwnPosesEvaluator<S>::start(ParameterValues val
   for (std::size_t s = 0; s < expected.size(); ++s) {
     detail::move(expected[s], -(known_.by_free[s] * change));
   }
-  std::vector<detail::OwnPoseSums> there = sums_at(std::move(expected), values, losses);
+  std::vector<detail::SamplePoseSums> there = sums_at(std::move(expected), values, losses);
   for (std::size_t s = 0; s < now_.size(); ++s) {
     if (there[s].rows == at[s].rows && there[s].cost <= at[s].cost) {
       at[s] = std::move(there[s]);
@@ -204,8 +206,8 @@ std::vector<detail::OwnPoseSums> OwnPosesEvaluator<S>::start(ParameterValues val
 }
 
 template <class S>
-void OwnPosesEvaluator<S>::fit(ParameterValues values, Losses losses) {
-  std::vector<detail::OwnPoseSums> at = start(values, losses);
+void SamplePosesEvaluator<S>::fit(ParameterValues values, Losses losses) {
+  std::vector<detail::SamplePoseSums> at = start(values, losses);
   std::vector<detail::Damping> damping(now_.size());
   std::vector<bool> moves(now_.size(), true);
   constexpr int kMostSteps = 100;
@@ -223,7 +225,7 @@ void OwnPosesEvaluator<S>::fit(ParameterValues values, Losses losses) {
       place(s);
     }
     if (std::find(moves.begin(), moves.end(), true) == moves.end()) return;
-    std::vector<detail::OwnPoseSums> there = sums(values, losses);
+    std::vector<detail::SamplePoseSums> there = sums(values, losses);
     for (std::size_t s = 0; s < now_.size(); ++s) {
       if (!moves[s]) continue;
       const bool is_better = there[s].rows == at[s].rows && there[s].cost <= at[s].cost;
@@ -239,10 +241,10 @@ void OwnPosesEvaluator<S>::fit(ParameterValues values, Losses losses) {
 }
 
 template <class S>
-OwnPosesEvaluator<S>::OwnPosesEvaluator(const BasicProblem<S>& problem, const FreeSet& free)
+SamplePosesEvaluator<S>::SamplePosesEvaluator(const BasicProblem<S>& problem, const FreeSet& free)
     : problem_(problem),
       free_(free),
-      own_(detail::own_pose_parameters(problem)),
+      own_(detail::sample_pose_parameters(problem)),
       all_(detail::joined(free, own_)),
       batches_(problem.batches()),
       now_(problem.poses_of_samples()),
@@ -265,8 +267,8 @@ OwnPosesEvaluator<S>::OwnPosesEvaluator(const BasicProblem<S>& problem, const Fr
 }
 
 template <class S>
-std::optional<UndefinedResidual> OwnPosesEvaluator<S>::collect(ParameterValues values,
-                                                               Losses losses, Linearization at) {
+std::optional<UndefinedResidual> SamplePosesEvaluator<S>::collect(ParameterValues values,
+                                                                  Losses losses, Linearization at) {
   fit(values, losses);
   rows_.clear();
   const auto undefined = by_all_->evaluate(
@@ -303,10 +305,10 @@ std::optional<UndefinedResidual> OwnPosesEvaluator<S>::collect(ParameterValues v
 }
 
 template <class S>
-std::optional<UndefinedResidual> OwnPosesEvaluator<S>::evaluate(ParameterValues values,
-                                                                bool derivatives,
-                                                                const RowVisitor& visit,
-                                                                Linearization at) {
+std::optional<UndefinedResidual> SamplePosesEvaluator<S>::evaluate(ParameterValues values,
+                                                                   bool derivatives,
+                                                                   const RowVisitor& visit,
+                                                                   Linearization at) {
   const auto undefined = collect(values, Losses::as_given, at);
   for (Rows& of : rows_) {
     if (!derivatives) of.residuals.jacobian.resize(0, 0);
@@ -316,8 +318,8 @@ std::optional<UndefinedResidual> OwnPosesEvaluator<S>::evaluate(ParameterValues 
 }
 
 template <class S>
-NormalEquations OwnPosesEvaluator<S>::normal_equations(ParameterValues values, bool derivatives,
-                                                       Losses losses) {
+NormalEquations SamplePosesEvaluator<S>::normal_equations(ParameterValues values, bool derivatives,
+                                                          Losses losses) {
   NormalEquations total(derivatives ? free_.size() : 0);
   std::optional<UndefinedResidual> undefined;
   if (!derivatives) {
@@ -348,7 +350,8 @@ NormalEquations OwnPosesEvaluator<S>::normal_equations(ParameterValues values, b
 }
 
 template <class S>
-std::vector<std::vector<Pose<double>>> OwnPosesEvaluator<S>::own_poses(ParameterValues values) {
+std::vector<std::vector<Pose<double>>> SamplePosesEvaluator<S>::sample_poses(
+    ParameterValues values) {
   fit(values, Losses::as_given);
   return now_;
 }
