@@ -65,8 +65,8 @@ function(kinecal_group_sources result name count folder)
   set(${result} ${units} PARENT_SCOPE)
 endfunction()
 
-# The translation units of folders: of each .cpp, and each .ipp beside a header of the same name, but with
-# KINECAL_HEADER_ONLY of no .ipp.
+# The translation units of folders: of each .cpp, and each .ipp beside a header of the same name with more than
+# templates in it, but with KINECAL_HEADER_ONLY of no .ipp.
 # @param result   the variable to set
 # @param count    so many sources are one unit with KINECAL_UNITY
 # @param alone    sources that are units of their own
@@ -82,7 +82,10 @@ function(kinecal_add_units result name count alone options)
     foreach(file IN LISTS definitions)
       cmake_path(REPLACE_EXTENSION file hpp OUTPUT_VARIABLE header)
       if(EXISTS ${header} AND NOT KINECAL_HEADER_ONLY)
-        list(APPEND sources ${file})
+        file(STRINGS ${file} compiled_once REGEX "KINECAL_INLINE|KINECAL_HEADER_ONLY" LIMIT_COUNT 1)
+        if(compiled_once)
+          list(APPEND sources ${file})
+        endif()
       endif()
     endforeach()
   endforeach()

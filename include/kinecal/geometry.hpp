@@ -1,5 +1,5 @@
-// Umbrella header of geometry/: jets, packets, rotations, poses, a median, and symmetric
-// matrices.
+// Umbrella header of geometry/: jets, packets, rotations, poses, a median, and linear
+// systems.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -7,6 +7,7 @@
 #include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/geometry/jet.hpp"
 #include "kinecal/geometry/ldlt.hpp"
+#include "kinecal/geometry/least_norm.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/geometry/packet.hpp"
 #include "kinecal/geometry/pose.hpp"

@@ -98,7 +98,8 @@ struct Bent {
 TEST(DepthPolynomialConfig, InjectedErrorsAreRecoveredWithinTheirDeviations) {
   constexpr double kFarthest = 4.5;  // deviations; of 900 numbers
   int covered = 0, counted = 0;
-  for (int seed = 1; seed <= test::repetitions(100, 4); ++seed) {
+  const int seeds = test::repetitions_of_study(100, test::kIsSlow ? 4 : 20);
+  for (int seed = 1; seed <= seeds; ++seed) {
     const Bent bent(bent_config(all_injected()), bent_samples(60, static_cast<unsigned>(seed)));
     ASSERT_THAT(bent.diagnostics.errors, IsEmpty());
     ASSERT_TRUE(bent.judged.result.converged);

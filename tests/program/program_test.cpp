@@ -392,7 +392,7 @@ TEST_F(Program, ReportsTimeAndSpeed) {
 
 /// The program at each level that the processor has: an option of the dynamic loader chooses it.
 TEST_F(Program, CalibratesAlikeAtEachLevelOfTheProcessor) {
-  if (!KINECAL_HAS_LEVELS) GTEST_SKIP() << "the program is built without KINECAL_X86_64_LEVELS";
+  if (!test::has_levels()) GTEST_SKIP() << "the program is built without KINECAL_X86_64_LEVELS";
   const std::string loader = "/lib64/ld-linux-x86-64.so.2";
   const std::string levels_here = run("--help", loader).out;
   if (levels_here.find("--glibc-hwcaps-mask") == std::string::npos) {
@@ -436,7 +436,7 @@ TEST_F(Program, CalibratesAlikeAtEachLevelOfTheProcessor) {
 
 /// Eigen allocates and aligns them differently at each level.
 TEST_F(Program, GivesNoMatrixOfVariableSizeToTheLibraryOfALevel) {
-  if (!KINECAL_HAS_LEVELS) GTEST_SKIP() << "the program is built without KINECAL_X86_64_LEVELS";
+  if (!test::has_levels()) GTEST_SKIP() << "the program is built without KINECAL_X86_64_LEVELS";
   const Outcome symbols =
       run("--dynamic --demangle --undefined-only " + test::kinecal_program(), "nm");
   ASSERT_EQ(symbols.code, 0) << symbols.err;

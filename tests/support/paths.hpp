@@ -26,6 +26,9 @@ namespace kinecal::test {
 /// mpirun; empty where the build has found no MPI.
 [[nodiscard]] std::string mpirun();
 
+/// True if the program has its evaluation for several levels of the processor.
+[[nodiscard]] bool has_levels();
+
 /// The program of examples/ that adds its own error block.
 [[nodiscard]] std::string own_program();
 

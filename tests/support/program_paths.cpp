@@ -24,6 +24,10 @@ std::string mpirun() {
   return KINECAL_MPIRUN;
 }
 
+bool has_levels() {
+  return KINECAL_HAS_LEVELS;
+}
+
 std::string own_program() {
   return KINECAL_OWN_PROGRAM;
 }

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -12,6 +10,8 @@
 #include <vector>
 
 #include "kinecal/evaluation/sample_poses.hpp"
+#include "kinecal/geometry/eigenpairs.hpp"
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/kinematics/floating_joint.hpp"
 
 namespace kinecal {
@@ -99,13 +99,12 @@ inline void move(std::vector<Pose<double>>& poses, const Eigen::VectorXd& step) 
 /// The pseudo-inverse of a (k x k) J^T J: directions without curvature stay out.
 [[nodiscard]] inline Eigen::MatrixXd inverse_where_determined(const Eigen::MatrixXd& hessian) {
   const Eigen::VectorXd per_length = column_lengths(hessian).cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(per_length.asDiagonal() * hessian *
-                                                             per_length.asDiagonal());
+  const Eigenpairs eigen = eigenpairs(per_length.asDiagonal() * hessian * per_length.asDiagonal());
   constexpr double kNoCurvature = 1e-12;  // of unit columns
-  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr(
-      [](double value) { return value > kNoCurvature ? 1.0 / value : 0.0; });
-  return per_length.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
-         eigen.eigenvectors().transpose() * per_length.asDiagonal();
+  const Eigen::VectorXd inverse =
+      eigen.values.unaryExpr([](double value) { return value > kNoCurvature ? 1.0 / value : 0.0; });
+  return per_length.asDiagonal() * eigen.vectors * inverse.asDiagonal() *
+         eigen.vectors.transpose() * per_length.asDiagonal();
 }
 
 inline Eigen::VectorXd SamplePoseSums::step(double damping) const {
@@ -113,7 +112,8 @@ inline Eigen::VectorXd SamplePoseSums::step(double damping) const {
   Eigen::MatrixXd scaled = per_length.asDiagonal() * hessian * per_length.asDiagonal();
   constexpr double kNoCurvature = 1e-12;  // of unit columns
   scaled.diagonal().array() += damping + kNoCurvature;
-  return per_length.cwiseProduct(scaled.ldlt().solve(-per_length.cwiseProduct(gradient)));
+  return per_length.cwiseProduct(
+      Ldlt(scaled).solve(Eigen::VectorXd(-per_length.cwiseProduct(gradient))));
 }
 
 inline double SamplePoseSums::decrease(const Eigen::VectorXd& change) const {

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/solve/compressed_cost.hpp"
 
 namespace kinecal::detail {
@@ -77,7 +78,8 @@ KINECAL_INLINE GaussNewtonStep gauss_newton_step(const EquivalentResidual& at) {
   const Eigen::MatrixXd scaled = rows * scale.cwiseInverse().asDiagonal();
   Eigen::MatrixXd hessian = scaled.transpose() * scaled;
   hessian.diagonal().array() += 10.0 * kNoCurvature;
-  const Eigen::VectorXd step = hessian.ldlt().solve(-(scaled.transpose() * residual));
+  const Eigen::VectorXd step =
+      Ldlt(hessian).solve(Eigen::VectorXd(-(scaled.transpose() * residual)));
   return {step.cwiseQuotient(scale), 0.5 * (residual + scaled * step).squaredNorm()};
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -10,6 +9,7 @@
 #include <numbers>
 
 #include "kinecal/evaluation/parallel.hpp"
+#include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/solve/fit_frames.hpp"
 #include "kinecal/solve/rotation_grid.hpp"
 
@@ -102,7 +102,7 @@ class FrameFit {
     const std::vector<int>& t = translations_;
     Eigen::MatrixXd hessian = at.hessian(t, t);
     hessian.diagonal().array() += kLeastDamping * hessian.diagonal().maxCoeff();
-    const Eigen::VectorXd step = hessian.ldlt().solve(-at.gradient(t));
+    const Eigen::VectorXd step = Ldlt(hessian).solve(Eigen::VectorXd(-at.gradient(t)));
     Eigen::VectorXd trial = values;
     for (std::size_t k = 0; k < t.size(); ++k) {
       trial(evaluator_.free().parameters()[static_cast<std::size_t>(t[k])]) +=
@@ -119,7 +119,7 @@ class FrameFit {
     Eigen::MatrixXd damped = at.hessian;
     const double floor = kFloor * damped.diagonal().maxCoeff();
     damped.diagonal() += damping * damped.diagonal().cwiseMax(floor);
-    const Eigen::VectorXd step = damped.ldlt().solve(-at.gradient);
+    const Eigen::VectorXd step = Ldlt(damped).solve(Eigen::VectorXd(-at.gradient));
     const std::vector<int>& columns = evaluator_.free().parameters();
     for (std::size_t c = 0; c < columns.size(); ++c) {
       values(columns[c]) += step(static_cast<Eigen::Index>(c));

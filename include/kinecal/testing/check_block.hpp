@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <optional>
 
 #include "kinecal/errors/block_checks.hpp"
+#include "kinecal/geometry/least_norm.hpp"
 #include "kinecal/testing/block_input.hpp"
 
 namespace kinecal {
@@ -96,7 +96,7 @@ class BlockCheck {
       const Eigen::MatrixXd by_arguments =
           input.differentiate(block_).derivatives.leftCols(Input::kArguments);
       if (!by_arguments.allFinite()) return std::nullopt;
-      Eigen::VectorXd step = by_arguments.completeOrthogonalDecomposition().solve(-r);
+      Eigen::VectorXd step = detail::least_norm_solution(by_arguments, -r);
       step *= std::min(1.0, kLongest / step.norm());
       for (int k = 0; k < Input::kArguments; ++k) input = input.moved(k, step(k));
     }

@@ -171,7 +171,7 @@ TEST(CircleGridFinder, WhiteDiscsOnBlackAreFoundAsBlackOnesOnWhite) {
 }
 
 TEST(CircleGridFinder, MostRandomViewsAreFoundAndNoneIsWrong) {
-  const int count = test::repetitions(200, 10);
+  const int count = test::repetitions_of_study(200, test::kIsSlow ? 10 : 40);
   int there = 0;
   for (int i = 0; i < count; ++i) {
     SeededRandom random(static_cast<std::uint64_t>(i));

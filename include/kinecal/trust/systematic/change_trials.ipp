@@ -3,12 +3,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
 
+#include "kinecal/geometry/least_norm.hpp"
 #include "kinecal/trust/noise/joint_effects.ipp"
 #include "kinecal/trust/systematic/systematic_trial.ipp"
 
@@ -176,8 +176,9 @@ struct Changing {
   std::vector<Changing> changing;
   for (const auto& [owner, of_owner] : columns) changing.push_back({owner, of_owner});
   if (zeros.size() > 1) changing.push_back({"", zeros});
+  const Eigen::MatrixXd& basis = fit.coordinates.basis;
   const Eigen::MatrixXd to_coordinates =
-      fit.coordinates.basis.completeOrthogonalDecomposition().pseudoInverse();
+      least_norm_solution(basis, Eigen::MatrixXd::Identity(basis.rows(), basis.rows()));
   const Eigen::MatrixXd all = information(fit, fit.loss);
   for (Changing& one : changing) {
     one.by = to_coordinates(Eigen::all, one.columns);
@@ -375,7 +376,7 @@ class ChangeTrials {
       course(s) = of.at(s, samples_);
     }
     course.array() -= course.mean();
-    const Eigen::VectorXd left = course - poses * poses.colPivHouseholderQr().solve(course);
+    const Eigen::VectorXd left = course - poses * least_norm_solution(poses, course);
     return left.squaredNorm() < (1.0 - kExplained) * course.squaredNorm();
   }
   /// Sets size and text.

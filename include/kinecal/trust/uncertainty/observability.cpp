@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/uncertainty/observability.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -74,9 +73,11 @@ void reduce(Eigen::MatrixXd& basis) {
     for (const int c : order) {
       if (null.cols() == 0 || null.row(c).norm() < least) continue;
       held.push_back(parameter(c));
-      // The rest has no part of this parameter: reflect its row onto the last direction.
-      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(null.row(c).transpose());
-      null = (null * qr.householderQ()).rightCols(null.cols() - 1).eval();
+      // The rest has no part of this parameter: reflect its row onto the first direction.
+      Eigen::VectorXd normal = null.row(c).transpose();
+      normal(0) += std::copysign(normal.norm(), normal(0));
+      const Eigen::VectorXd twice = null * normal * (2.0 / normal.squaredNorm());
+      null = (null - twice * normal.transpose()).rightCols(null.cols() - 1).eval();
     }
   }
   return held;

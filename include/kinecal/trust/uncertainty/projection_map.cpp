@@ -3,8 +3,6 @@
 #include "kinecal/trust/uncertainty/projection_map.hpp"
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/geometry/least_norm.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/text/image_region.hpp"
@@ -152,9 +151,7 @@ class TakenUp {
     products_ += by_motion.transpose() * by_free;
   }
   /// (6 x free)
-  [[nodiscard]] Eigen::MatrixXd motion() const {
-    return -squares_.completeOrthogonalDecomposition().solve(products_);
-  }
+  [[nodiscard]] Eigen::MatrixXd motion() const { return -least_norm_solution(squares_, products_); }
 
  private:
   Eigen::Matrix<double, 6, 6> squares_;

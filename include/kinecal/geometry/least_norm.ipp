@@ -1,0 +1,16 @@
+// Definition of least_norm.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/QR>
+
+#include "kinecal/geometry/least_norm.hpp"
+
+namespace kinecal::detail {
+
+KINECAL_INLINE Eigen::MatrixXd least_norm_solution(const Eigen::MatrixXd& a,
+                                                   const Eigen::MatrixXd& b) {
+  return a.completeOrthogonalDecomposition().solve(b);
+}
+
+}  // namespace kinecal::detail
