@@ -60,7 +60,8 @@ struct PlaneView {
 
   [[nodiscard]] CornerFit fit(const Straightening& lens) const {
     constexpr int kPasses = 12;
-    CornerFit best{lens};
+    CornerFit best;
+    best.lens = lens;
     best.misses.resize(plane.size());
     best.weights.assign(plane.size(), 1.0);
     std::vector<Eigen::Vector2d> straight;
