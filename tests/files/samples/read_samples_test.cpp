@@ -122,6 +122,7 @@ TEST(ReadSamples, TimeGrowsWithTheNumberOfSensorsNotWithItsSquare) {
     for (int i = 0; i < sensors; ++i) {
       text += "- {sensor_name: sensor_" + std::to_string(i) + ", features: []}\n";
     }
+    text += "---\n";
     double least = 1e9;
     for (int run = 0; run < 2; ++run) {
       const std::clock_t start = std::clock();
