@@ -126,6 +126,38 @@ void set_uncertainty(const AnyProblem& problem, const FreeSet& free, ParameterVa
   with_priors(basis.transpose() * prior_scatter(problem, free, values, of_free, variance) * basis);
 }
 
+/// Doubts no sample without which the others are foretold no better: many parameters fit few samples more closely
+/// than those that are left out, whichever these are.
+/// @param found  with the held-out errors of all samples; its captures may be bad no longer
+void keep_what_foretells(AnyEvaluator& evaluator, ParameterValues values, const LinearFit& fit,
+                         std::span<const Sample> samples, const PoseGroups& poses,
+                         const AssessOptions& options, Assessment& found) {
+  const auto is_bad = [&](int sample) {
+    return found.captures[static_cast<std::size_t>(sample)].bad;
+  };
+  LinearFit without = fit;
+  std::vector<int> fold = folds_of(samples, poses, std::min(options.folds, poses.count));
+  std::set<int> terms;  // in which a bad sample is measured
+  for (const RowBlock& block : fit.blocks) {
+    if (!is_bad(block.sample)) continue;
+    without.loss.segment(block.first, block.size).setZero();
+    fold[static_cast<std::size_t>(block.sample)] = -1;
+    terms.insert(block.term);
+  }
+  if (terms.empty() || found.held_out.empty()) return;
+  try {
+    const std::vector<HeldOutError> errors = held_out_errors(evaluator, values, without, fold);
+    const bool better = std::any_of(terms.begin(), terms.end(), [&](int term) {
+      const auto t = static_cast<std::size_t>(term);
+      return errors[t].held_out < found.held_out[t].held_out;
+    });
+    if (better) return;
+  } catch (const std::domain_error&) {
+    return;
+  }
+  for (CaptureError& error : found.captures) error.bad = false;
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -160,7 +192,9 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   const Eigen::MatrixXd effects = detail::joint_effects(problem, values, samples, inside, fit);
   found.common = common_noise(fit, effects, single, found.noise);
   detail::set_uncertainty(problem, inside, values, fit, inverse, poses, found);
+  found.held_out = detail::held_out_of(*evaluator, values, fit, samples, poses, options);
   found.captures = capture_errors(problem, fit, single);
+  detail::keep_what_foretells(*evaluator, values, fit, samples, poses, options, found);
   found.noise_without_bad = noise_without_bad(fit, found.captures);
   found.systematic = systematic_error({problem, inside, fit, values, samples}, poses, effects,
                                       found.noise, found.common);
@@ -171,7 +205,6 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
                                detail::known_by_pixels(problem, found.maps));
   found.alike = alike_pixels(problem, fit, found.maps, samples);
   found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
-  found.held_out = detail::held_out_of(*evaluator, values, fit, samples, poses, options);
   if (const auto frames = compared_frames(problem, samples)) {
     found.pose = pose_uncertainty(problem, inside, values, fit, found.uncertainty, samples,
                                   frames->first, frames->second);

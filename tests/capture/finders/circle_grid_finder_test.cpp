@@ -8,15 +8,16 @@
 #include <stdexcept>
 
 #include "kinecal/capture/boards/disc_centres.hpp"
+#include "kinecal/capture/boards/homography.hpp"
 #include "kinecal/study/seeded_random.hpp"
 #include "support/board_images.hpp"
+#include "support/disc_images.hpp"
 #include "support/repetitions.hpp"
 
 namespace kinecal {
 namespace {
 
 using kinecal::test::Exposure;
-using kinecal::test::Print;
 using kinecal::test::Target;
 using ::testing::HasSubstr;
 
@@ -35,52 +36,32 @@ CircleGridSettings asymmetric_grid() {
   return settings;
 }
 
-Vector3<double> disc_place(const CircleGridSettings& s, int column, int row) {
-  return {(s.asymmetric ? 2 * column + row % 2 : column) * s.size, row * s.size, 0.0};
-}
-
-/// The grid with a white margin.
-Print print_of(const CircleGridSettings& s, double radius) {
-  const Vector3<double> last = disc_place(s, s.points_x - 1, s.points_y - 1);
-  return [=](double x, double y) {
-    const double margin = 1.5 * s.size, right = last.x() + (s.asymmetric ? s.size : 0.0);
-    if (x < -margin || y < -margin || x > right + margin || y > last.y() + margin) return -1.0;
-    for (int row = 0; row < s.points_y; ++row) {
-      if (std::abs(y - row * s.size) > radius) continue;
-      for (int column = 0; column < s.points_x; ++column) {
-        const Vector3<double> at = disc_place(s, column, row);
-        if (std::hypot(x - at.x(), y - at.y()) <= radius) return 0.0;
-      }
-    }
-    return 1.0;
-  };
-}
-
 Target target_of(const CircleGridSettings& s, double radius, double distance, double tilt_x,
                  double tilt_y, double roll) {
-  const Vector3<double> middle = 0.5 * disc_place(s, s.points_x - 1, s.points_y - 1);
-  return {print_of(s, radius), test::facing({0.01, 0.0, distance}, tilt_x, tilt_y, roll, middle)};
+  const Vector3<double> middle = 0.5 * test::disc_place(s, s.points_x - 1, s.points_y - 1);
+  return {test::disc_print(s, radius),
+          test::facing({0.01, 0.0, distance}, tilt_x, tilt_y, roll, middle)};
 }
 
-TEST(EllipseMiddle, IsThatOfTheImageOfTheCirclesBorder) {
+TEST(MiddleOfDisc, IsTheCentroidOfItsImageAndNotTheImageOfItsCentre) {
   Matrix3<double> h;
   h << 800, 20, 300, -10, 700, 200, 0.6, -0.4, 1.0;
+  const PlaneImage image = [&](const Eigen::Vector2d& p) { return mapped(h, p); };
   const Eigen::Vector2d centre(0.1, 0.05);
   constexpr double kRadius = 0.08;
-  // The middle of an ellipse is where its longest chords meet: midway between tangent points of parallel
-  // tangents, here the outermost points along u and v.
+  // An ellipse is symmetric, so its centroid is midway between its outermost points.
   Eigen::Vector2d least(1e9, 1e9), most = -least;
   for (int i = 0; i < 100000; ++i) {
     const double angle = i * 2e-5 * std::numbers::pi;
-    const Eigen::Vector2d p = centre + kRadius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-    const Vector3<double> q = h * Vector3<double>(p.x(), p.y(), 1.0);
-    least = least.cwiseMin(q.head<2>() / q.z());
-    most = most.cwiseMax(q.head<2>() / q.z());
+    const Eigen::Vector2d p =
+        image(centre + kRadius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    least = least.cwiseMin(p);
+    most = most.cwiseMax(p);
   }
-  const Eigen::Vector2d middle = ellipse_middle(h, centre, kRadius);
-  EXPECT_LT((middle - 0.5 * (least + most)).norm(), 1e-4);
-  const Vector3<double> c = h * Vector3<double>(centre.x(), centre.y(), 1.0);
-  EXPECT_GT((middle - c.head<2>() / c.z()).norm(), 1.0) << "here the correction matters";
+  const Eigen::Vector2d middle = middle_of_disc(image, centre, kRadius);
+  const double offset = (middle - image(centre)).norm();
+  EXPECT_LT((middle - 0.5 * (least + most)).norm(), 0.003 * offset);
+  EXPECT_GT(offset, 1.0) << "here the correction matters";
 }
 
 TEST(DiscCentres, OfTiltedDiscsAreCorrectedForPerspective) {
@@ -90,7 +71,7 @@ TEST(DiscCentres, OfTiltedDiscsAreCorrectedForPerspective) {
   const View view = test::view_of({target}, Exposure{.blur = 0.7, .noise = 2.0});
   std::vector<Eigen::Vector2d> plane, about, truth;
   for (int i = 0; i < 20; ++i) {
-    const Vector3<double> place = disc_place(s, i % 5, i / 5);
+    const Vector3<double> place = test::disc_place(s, i % 5, i / 5);
     plane.emplace_back(place.head<2>());
     truth.push_back(test::pixel_of(*view.camera, target.camera_T_board, place));
     about.emplace_back(truth.back() + Eigen::Vector2d(1.0, -0.7));
@@ -101,7 +82,7 @@ TEST(DiscCentres, OfTiltedDiscsAreCorrectedForPerspective) {
   double uncorrected = 0.0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     EXPECT_LT((found->pixels[i] - truth[i]).norm(), 0.12) << "disc " << i;
-    const Eigen::Vector2d middle = ellipse_middle(found->h, plane[i], kRadius);
+    const Eigen::Vector2d middle = middle_of_disc(found->image, plane[i], kRadius);
     uncorrected = std::max(uncorrected, (middle - truth[i]).norm());
   }
   EXPECT_GT(uncorrected, 0.5) << "the offset that was taken off, pixels";
@@ -158,16 +139,43 @@ TEST(CircleGridFinder, AsymmetricGridsAreFoundAtAnyAngleWithTheRightFirstDisc) {
 TEST(CircleGridFinder, WhiteDiscsOnBlackAreFoundAsBlackOnesOnWhite) {
   for (const CircleGridSettings& s : {asymmetric_grid(), symmetric_grid(7, 5)}) {
     const Target black = target_of(s, 0.375 * s.size, 0.45, 0.4, -0.3, 0.2);
-    const Target white{[=](double x, double y) {
-                         const double value = black.print(x, y);
-                         return value < 0.0 ? value : 1.0 - value;
-                       },
-                       black.camera_T_board};
+    const Target white{test::negative(black.print), black.camera_T_board};
     const Found found = CircleGridFinder(s).find(test::view_of({white}));
     ASSERT_TRUE(found) << found.refusal;
     EXPECT_EQ(static_cast<int>(found.observations[0].features.size()), s.points_x * s.points_y);
     EXPECT_LT(test::mean_error(found, white), 0.1);
   }
+}
+
+TEST(CircleGridFinder, GridsThatAFisheyeBendsAreFoundWithoutKnowingItsLens) {
+  // Before its calibration: camera_info is that of a pinhole.
+  const CameraInfo fisheye = test::fisheye_camera(800, 600, 2.6);
+  const std::vector<Eigen::Vector2d> away = {{0.0, 0.0}, {0.5, 0.1}, {-0.4, -0.2}, {-0.6, 0.2}};
+  int missed = 0;
+  for (int i = 0; i < test::repetitions(8, 4); ++i) {
+    const CircleGridSettings s = i % 2 == 0 ? asymmetric_grid() : symmetric_grid(7, 5);
+    Target target = target_of(s, 0.375 * s.size, 10.0 * s.size, 0.3, -0.2, 0.3);
+    const Eigen::Vector2d way = away[static_cast<std::size_t>(i / 2)];
+    const Eigen::AngleAxisd turn(way.norm(), Vector3<double>(-way.y(), way.x(), 0.0).normalized());
+    if (way.norm() > 0.0) {
+      target.camera_T_board.rotation = turn * target.camera_T_board.rotation;
+      target.camera_T_board.translation = turn * target.camera_T_board.translation;
+    }
+    View view;
+    view.frame = "optical";
+    view.camera = test::unknown_lens(800, 600);
+    view.image = test::picture(fisheye, {target});
+    const Found found = CircleGridFinder(s).find(view);
+    ASSERT_TRUE(found) << i << ": " << found.refusal;
+    for (std::size_t k = 0; k < found.observations[0].features.size(); ++k) {
+      const auto truth =
+          test::pixel_of(fisheye, target.camera_T_board, found.observations[1].features[k].point);
+      const double off = (found.observations[0].features[k].point.head<2>() - truth).norm();
+      EXPECT_LT(off, 0.1) << "disc " << k << " of view " << i;
+    }
+    missed += s.points_x * s.points_y - static_cast<int>(found.observations[0].features.size());
+  }
+  EXPECT_EQ(missed, 0);
 }
 
 TEST(CircleGridFinder, MostRandomViewsAreFoundAndNoneIsWrong) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -112,6 +113,28 @@ TEST(ReadSamples, EachDocumentIsASampleThatKnowsItsLine) {
   EXPECT_EQ(sample.observations[0].features[0].frame, "tip");
   EXPECT_EQ(sample.observations[0].features[0].point, Vector3<double>(1.0, 2.0, 3.0));
   EXPECT_FALSE(sample.observations[0].camera);
+}
+
+TEST(ReadSamples, TimeGrowsWithTheNumberOfSensorsNotWithItsSquare) {
+  const auto seconds = [](int sensors) {
+    std::string text = kJoints;
+    text += "observations:\n";
+    for (int i = 0; i < sensors; ++i) {
+      text += "- {sensor_name: sensor_" + std::to_string(i) + ", features: []}\n";
+    }
+    text += "---\n";
+    double least = 1e9;
+    for (int run = 0; run < 2; ++run) {
+      const std::clock_t start = std::clock();
+      const ReadText reading = read_text(text);
+      least = std::min(least, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+      EXPECT_THAT(reading.diagnostics.errors, IsEmpty());
+      EXPECT_EQ(reading.samples.at(0).observations.size(), static_cast<std::size_t>(sensors));
+    }
+    return least;
+  };
+  const double few = seconds(4000);
+  EXPECT_LT(seconds(32000), 24.0 * few) << "8 times as long, if linear; 64 times, if quadratic";
 }
 
 TEST(ReadSamples, CameraIsReadWithTheKeysOfRos1AndOfRos2) {

@@ -57,36 +57,11 @@ namespace {
   return fit;
 }
 
-/// A corner that is farther off is wrong, pixels.  4 medians are 4.7 standard deviations: chance drops none.
-[[nodiscard]] double limit_of(const CornerFit& fit) {
-  constexpr double kPixels = 0.75, kMedians = 4.0;
-  return std::max(kPixels, kMedians * fit.typical);
-}
-
-[[nodiscard]] std::ptrdiff_t wrong_corners(const CornerFit& fit) {
-  const double limit = limit_of(fit);
-  return std::count_if(fit.misses.begin(), fit.misses.end(),
-                       [&](const Eigen::Vector2d& miss) { return !(miss.norm() <= limit); });
-}
-
-/// The fit with the lens that agrees best.
+/// The fit with the lens that agrees best; with a smooth field if that is not enough.
 [[nodiscard]] CornerFit best_fit(const PlaneView& view, const CameraInfo& camera) {
-  constexpr double kGood = 0.25, kBetter = 0.6;  // pixels; share of what was left
-  CornerFit best = view.fit(no_lens());
-  const auto take = [&](CornerFit other) {
-    // A lens that is bent more than the model shows first where it is bent most.
-    const bool explains =
-        other.typical <= best.typical && wrong_corners(other) < wrong_corners(best);
-    if (other.typical < kBetter * best.typical || explains) best = std::move(other);
-  };
-  const auto is_good = [&] { return best.typical <= kGood && wrong_corners(best) == 0; };
-  if (is_good()) return best;
-  if (const auto lens = known_lens(camera, view)) take(view.fit(*lens));
-  if (is_good() || view.plane.size() < kForLens) return best;
-  take(best_division(view, camera));
-  if (!is_good()) take(best_fisheye(view, camera));
-  if (!is_good() && view.plane.size() >= kForSquare) {
-    take(without_smooth_field(view, best));
+  CornerFit best = best_lens(view, camera);
+  if (!is_good(best) && view.plane.size() >= kForSquare) {
+    take_better(without_smooth_field(view, best), best);
   }
   return best;
 }

@@ -26,10 +26,17 @@ struct Straightening {
   std::function<Eigen::Vector2d(const Eigen::Vector2d&)> straight, bent;
 };
 
-/// A fit: H, and the distance of each corner.
+[[nodiscard]] inline Straightening no_lens() {
+  const auto same = [](const Eigen::Vector2d& pixel) { return pixel; };
+  return {same, same};
+}
+
+/// A fit: pixel = lens(H (x, y, 1)), and the distance of each corner.
 struct CornerFit {
-  std::vector<Eigen::Vector2d> misses;  ///< seen minus predicted, pixels
-  std::vector<double> weights;          ///< from 0 to 1
+  Straightening lens = no_lens();
+  Matrix3<double> h = Matrix3<double>::Identity();  ///< (3 x 3)
+  std::vector<Eigen::Vector2d> misses;              ///< seen minus predicted, pixels
+  std::vector<double> weights;                      ///< from 0 to 1
   double typical = std::numeric_limits<double>::infinity();
 };
 
@@ -54,6 +61,7 @@ struct PlaneView {
   [[nodiscard]] CornerFit fit(const Straightening& lens) const {
     constexpr int kPasses = 12;
     CornerFit best;
+    best.lens = lens;
     best.misses.resize(plane.size());
     best.weights.assign(plane.size(), 1.0);
     std::vector<Eigen::Vector2d> straight;
@@ -61,6 +69,7 @@ struct PlaneView {
     for (int pass = 0; pass < kPasses; ++pass) {
       const auto h = homography(plane, straight, best.weights);
       if (!h) break;
+      best.h = *h;
       for (std::size_t i = 0; i < plane.size(); ++i) {
         best.misses[i] = pixels[i] - lens.bent(mapped(*h, plane[i]));
       }
@@ -84,11 +93,6 @@ struct PlaneView {
     return centre + 2.0 / (1.0 + std::sqrt(std::max(0.0, root))) * from;
   };
   return {straight, bent};
-}
-
-[[nodiscard]] inline Straightening no_lens() {
-  const auto same = [](const Eigen::Vector2d& pixel) { return pixel; };
-  return {same, same};
 }
 
 /// The lens of camera_info; nullopt if it has none, or one that kinecal does not know.  Its pinhole looks at
@@ -166,6 +170,43 @@ struct PlaneView {
     const double from = best_focal;
     for (const int side : {-2, -1, 1, 2}) attempt(from * std::pow(step, side / 3.0));
   }
+  return best;
+}
+
+/// A corner that is farther off is wrong, pixels.  4 medians are 4.7 standard deviations: chance drops none.
+[[nodiscard]] inline double limit_of(const CornerFit& fit) {
+  constexpr double kPixels = 0.75, kMedians = 4.0;
+  return std::max(kPixels, kMedians * fit.typical);
+}
+
+[[nodiscard]] inline std::ptrdiff_t wrong_corners(const CornerFit& fit) {
+  const double limit = limit_of(fit);
+  return std::count_if(fit.misses.begin(), fit.misses.end(),
+                       [&](const Eigen::Vector2d& miss) { return !(miss.norm() <= limit); });
+}
+
+/// True if a fit leaves nothing that another lens could explain.
+[[nodiscard]] inline bool is_good(const CornerFit& fit) {
+  constexpr double kGood = 0.25;  // pixels
+  return fit.typical <= kGood && wrong_corners(fit) == 0;
+}
+
+/// Takes another fit if it is clearly better.
+inline void take_better(CornerFit other, CornerFit& best) {
+  constexpr double kBetter = 0.6;  // of what was left
+  // A lens that is bent more than the model shows first where it is bent most.
+  const bool explains = other.typical <= best.typical && wrong_corners(other) < wrong_corners(best);
+  if (other.typical < kBetter * best.typical || explains) best = std::move(other);
+}
+
+/// The fit with the lens that agrees best: none, that of the camera, the division model or a fisheye.
+[[nodiscard]] inline CornerFit best_lens(const PlaneView& view, const CameraInfo& camera) {
+  CornerFit best = view.fit(no_lens());
+  if (is_good(best)) return best;
+  if (const auto lens = known_lens(camera, view)) take_better(view.fit(*lens), best);
+  if (is_good(best) || view.plane.size() < kForLens) return best;
+  take_better(best_division(view, camera), best);
+  if (!is_good(best)) take_better(best_fisheye(view, camera), best);
   return best;
 }
 

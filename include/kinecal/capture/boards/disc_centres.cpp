@@ -91,13 +91,17 @@ struct DiscPixel {
   return SeenDisc{about + sum / area, area};
 }
 
-/// How H stretches at a place: d pixel / d plane (2 x 2).
-[[nodiscard]] Eigen::Matrix2d stretch_of(const Matrix3<double>& h, const Eigen::Vector2d& at,
+/// The plane's image in a fit.
+[[nodiscard]] PlaneImage image_of(const CornerFit& fit) {
+  return [fit](const Eigen::Vector2d& place) { return fit.lens.bent(mapped(fit.h, place)); };
+}
+
+/// How an image stretches at a place: d pixel / d plane (2 x 2).
+[[nodiscard]] Eigen::Matrix2d stretch_of(const PlaneImage& image, const Eigen::Vector2d& at,
                                          double step) {
   const Eigen::Vector2d x(0.5 * step, 0.0), y(0.0, 0.5 * step);
   Eigen::Matrix2d stretch;
-  stretch << (mapped(h, at + x) - mapped(h, at - x)) / step,
-      (mapped(h, at + y) - mapped(h, at - y)) / step;
+  stretch << (image(at + x) - image(at - x)) / step, (image(at + y) - image(at - y)) / step;
   return stretch;
 }
 
@@ -107,18 +111,17 @@ struct MeasuredDiscs {
   double radius = 0.0;  ///< in the plane
 };
 
+/// @param of_plane  where they are about
 [[nodiscard]] std::optional<MeasuredDiscs> measured_discs(const GrayImage& image,
                                                           const std::vector<Eigen::Vector2d>& plane,
                                                           std::vector<Eigen::Vector2d> about,
-                                                          double gap) {
+                                                          double gap, const PlaneImage& of_plane) {
   constexpr int kPasses = 3;  // the window follows the disc
-  const auto h = homography(plane, about);
-  if (!h) return std::nullopt;
   MeasuredDiscs discs;
   for (int pass = 0; pass < kPasses; ++pass) {
     std::vector<double> radii;
     for (std::size_t i = 0; i < plane.size(); ++i) {
-      const Eigen::Matrix2d stretch = stretch_of(*h, plane[i], 0.1 * gap);
+      const Eigen::Matrix2d stretch = stretch_of(of_plane, plane[i], 0.1 * gap);
       if (!(std::abs(stretch.determinant()) * gap * gap > 16.0)) return std::nullopt;
       const Eigen::Matrix2d to_plane = stretch.inverse() / (0.5 * gap);
       const auto disc = measured_disc(image, about[i], to_plane);
@@ -135,16 +138,24 @@ struct MeasuredDiscs {
 }  // namespace
 }  // namespace detail
 
-Eigen::Vector2d ellipse_middle(const Matrix3<double>& h, const Eigen::Vector2d& centre,
+Eigen::Vector2d middle_of_disc(const PlaneImage& image, const Eigen::Vector2d& centre,
                                double radius) {
-  Matrix3<double> circle = Matrix3<double>::Identity();
-  circle(0, 2) = circle(2, 0) = -centre.x();
-  circle(1, 2) = circle(2, 1) = -centre.y();
-  circle(2, 2) = centre.squaredNorm() - radius * radius;
-  const Matrix3<double> back = h.inverse();
-  const Matrix3<double> conic = back.transpose() * circle * back;
-  const Eigen::Matrix2d square = conic.topLeftCorner<2, 2>();
-  return -(square.inverse() * conic.topRightCorner<2, 1>());
+  constexpr int kCorners = 64;  // of a polygon in place of the circle
+  const Eigen::Vector2d origin = image(centre);
+  const auto corner = [&](int k) -> Eigen::Vector2d {
+    const double angle = 2.0 * std::numbers::pi * k / kCorners;
+    return image(centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle))) - origin;
+  };
+  double area = 0.0;  // doubled
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero(), last = corner(0);
+  for (int k = 1; k <= kCorners; ++k) {
+    const Eigen::Vector2d next = corner(k);
+    const double triangle = last.x() * next.y() - last.y() * next.x();
+    area += triangle;
+    sum += triangle / 3.0 * (last + next);
+    last = next;
+  }
+  return origin + sum / area;
 }
 
 std::optional<DiscCentres> disc_centres(const GrayImage& image,
@@ -152,26 +163,21 @@ std::optional<DiscCentres> disc_centres(const GrayImage& image,
                                         const std::vector<Eigen::Vector2d>& about, double gap,
                                         const CameraInfo& camera) {
   constexpr int kPasses = 5;  // each leaves a tenth of the offset or less
-  const auto discs = detail::measured_discs(image, plane, about, gap);
+  detail::CornerFit fit = detail::best_lens({plane, about}, camera);
+  const auto discs = detail::measured_discs(image, plane, about, gap, detail::image_of(fit));
   if (!discs) return std::nullopt;
-  const detail::Straightening lens =
-      detail::known_lens(camera, {plane, discs->middles}).value_or(detail::no_lens());
-  DiscCentres centres{discs->middles, discs->radius};
+  fit = detail::best_lens({plane, discs->middles}, camera);
+  DiscCentres centres{discs->middles, discs->radius, {}};
   for (int pass = 0; pass < kPasses; ++pass) {
-    std::vector<Eigen::Vector2d> straight;
-    for (const Eigen::Vector2d& pixel : centres.pixels) straight.push_back(lens.straight(pixel));
-    const auto h = homography(plane, straight);
-    if (!h) return std::nullopt;
+    fit = detail::PlaneView{plane, centres.pixels}.fit(fit.lens);
+    centres.image = detail::image_of(fit);
     for (std::size_t i = 0; i < plane.size(); ++i) {
       const Eigen::Vector2d offset =
-          lens.bent(ellipse_middle(*h, plane[i], discs->radius)) - lens.bent(mapped(*h, plane[i]));
+          middle_of_disc(centres.image, plane[i], discs->radius) - centres.image(plane[i]);
       if (!offset.allFinite()) return std::nullopt;
       centres.pixels[i] = discs->middles[i] - offset;
     }
   }
-  const auto h = homography(plane, centres.pixels);
-  if (!h) return std::nullopt;
-  centres.h = *h;
   return centres;
 }
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "kinecal/capture/boards/disc_centres.hpp"
-#include "kinecal/capture/boards/homography.hpp"
 #include "kinecal/capture/boards/opencv_circles.hpp"
 
 namespace kinecal {
@@ -52,29 +52,43 @@ namespace {
   return discs;
 }
 
+/// True if each disc is about midway between those on opposite sides of it, whatever a lens bends.
+[[nodiscard]] bool is_disc_grid(const std::vector<Eigen::Vector2d>& discs,
+                                const CircleGridSettings& s) {
+  constexpr double kMostOff = 0.2;  // of the step: a lens bends less, another order is a step off
+  constexpr std::pair<int, int> kWays[] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {2, 0}};
+  const auto steps = [&](const Eigen::Vector2d& place) {
+    return std::pair(std::lround(place.x() / s.size), std::lround(place.y() / s.size));
+  };
+  std::map<std::pair<long, long>, Eigen::Vector2d> at;
+  const std::vector<Eigen::Vector2d> places = disc_places(s);
+  for (std::size_t i = 0; i < places.size(); ++i) at[steps(places[i])] = discs[i];
+  for (const auto& [place, disc] : at) {
+    for (const auto& [x, y] : kWays) {
+      const auto before = at.find({place.first - x, place.second - y}),
+                 after = at.find({place.first + x, place.second + y});
+      if (before == at.end() || after == at.end()) continue;
+      const Eigen::Vector2d off = 0.5 * (before->second + after->second) - disc;
+      if (off.norm() > kMostOff * 0.5 * (after->second - before->second).norm()) return false;
+    }
+  }
+  return true;
+}
+
 /// Discs in the grid's order: seen from its front, where they lie as the grid says; x to the right if
 /// there is a choice.  Empty if no order does.
 [[nodiscard]] std::vector<Eigen::Vector2d> ordered_discs(const std::vector<Eigen::Vector2d>& found,
                                                          const CircleGridSettings& s) {
-  constexpr double kMostOff = 0.2;  // of a step: a lens bends less, another order is a step off
-  const std::vector<Eigen::Vector2d> places = disc_places(s);
+  const auto across = static_cast<std::size_t>(s.points_x - 1),
+             down = static_cast<std::size_t>(s.points_x * (s.points_y - 1));
   std::vector<Eigen::Vector2d> best;
   double most = -std::numeric_limits<double>::infinity();
   const int orders = !s.asymmetric && s.points_x == s.points_y ? 8 : 4;
   for (int order = 0; order < orders; ++order) {
     std::vector<Eigen::Vector2d> discs = reordered(found, s, order);
-    const auto h = homography(places, discs);
-    if (!h) continue;
-    const Eigen::Vector2d middle = 0.5 * (places.front() + places.back()),
-                          x = mapped(*h, middle + Eigen::Vector2d(s.size, 0)) - mapped(*h, middle),
-                          y = mapped(*h, middle + Eigen::Vector2d(0, s.size)) - mapped(*h, middle);
+    const Eigen::Vector2d x = discs[across] - discs.front(), y = discs[down] - discs.front();
     if (x.x() * y.y() - x.y() * y.x() <= 0.0) continue;  // mirrored
-    const double step = std::min(x.norm(), y.norm());
-    double off = 0.0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      off = std::max(off, (mapped(*h, places[i]) - discs[i]).norm());
-    }
-    if (off > kMostOff * std::max(step, 1.0)) continue;
+    if (!is_disc_grid(discs, s)) continue;
     if (const double right = x.x() / x.norm(); right > most) {
       most = right;
       best = std::move(discs);
@@ -102,9 +116,9 @@ namespace {
       const Eigen::Vector2d out =
           sign * (way % 2 == 0 ? Eigen::Vector2d(r, 0.0) : Eigen::Vector2d(0.0, r));
       const Eigen::Vector2d along(-0.4 * out.y(), 0.4 * out.x());
-      const Eigen::Vector2d a = mapped(discs.h, place + out - along),
-                            b = mapped(discs.h, place + out + along);
-      const double wide = (mapped(discs.h, place + out) - mapped(discs.h, place)).norm();
+      const Eigen::Vector2d a = discs.image(place + out - along),
+                            b = discs.image(place + out + along);
+      const double wide = (discs.image(place + out) - discs.image(place)).norm();
       least = std::min(least, 2.0 * wide);
       if (const auto edge = measure_edge(image, a, b, 0.7 * wide)) {
         edges[way % 2].push_back(*edge);
@@ -171,8 +185,8 @@ Found CircleGridFinder::find(const View& view) const {
   }
   std::vector<TargetCorner> found;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double reach = 0.7 * (mapped(discs->h, places[i] + Eigen::Vector2d(discs->radius, 0)) -
-                                mapped(discs->h, places[i]))
+    const double reach = 0.7 * (discs->image(places[i] + Eigen::Vector2d(discs->radius, 0)) -
+                                discs->image(places[i]))
                                    .norm();
     found.push_back(
         {static_cast<int>(i), discs->pixels[i], {places[i].x(), places[i].y(), 0.0}, reach});

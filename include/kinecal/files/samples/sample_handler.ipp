@@ -17,6 +17,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -82,6 +83,7 @@ class SampleBuilder {
     if (node == SampleNode::sample) {
       line_ = line;
       sample_ = {};
+      sensors_.clear();
       sample_.joint_names.reserve(joints_);
       sample_.joint_positions.reserve(joints_);
       sample_.source = SourceLocation{file_, line}.str();
@@ -218,10 +220,7 @@ class SampleBuilder {
     const auto where = [&] {
       return fmt::format("sample at line {}, sensor {}", line_, shown(name));
     };
-    const auto same = [&](const Observation& o) { return o.sensor == name; };
-    if (std::any_of(sample_.observations.begin(), sample_.observations.end() - 1, same)) {
-      errors_.add(line, where() + " occurs twice");
-    }
+    if (!sensors_.insert(name).second) errors_.add(line, where() + " occurs twice");
     if (const std::string wrong = camera_.ids().apply(observation().features); !wrong.empty()) {
       errors_.add(line, where() + ": " + wrong);
     }
@@ -236,6 +235,7 @@ class SampleBuilder {
   int line_ = 0;            ///< where the sample begins
   std::size_t joints_ = 0;  ///< of the last sample: the next one probably has as many
   Sample sample_;
+  std::unordered_set<std::string> sensors_;               ///< of the sample's observations so far
   Eigen::Vector4d quaternion_ = Eigen::Vector4d::Zero();  ///< x y z w
   std::string key_;          ///< name of the last condition, or joint of the last pose
   bool of_feature_ = false;  ///< the open map of conditions is a feature's
