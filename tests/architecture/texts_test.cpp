@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 const std::set<std::string> kTexts = {"README.md",   "MANUAL.md",       "BACKGROUND.md",
                                       "CONCEPTS.md", "ARCHITECTURE.md", "CONTRIBUTING.md"};
 
-std::string text_of(const fs::path& file) {
+std::string content_of(const fs::path& file) {
   std::ifstream stream(file);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -47,10 +47,10 @@ TEST(Texts, LinksLeadToWhatIsInstalledAndToHeadings) {
   const fs::path root = test::source_folder();
   const std::regex link(R"(\]\(([^)#\s:]*)(#([^)\s]*))?\))");
   std::map<std::string, std::set<std::string>> anchors;
-  for (const std::string& name : kTexts) anchors[name] = anchors_of(text_of(root / name));
+  for (const std::string& name : kTexts) anchors[name] = anchors_of(content_of(root / name));
   int links = 0;
   for (const std::string& name : kTexts) {
-    const std::string text = text_of(root / name);
+    const std::string text = content_of(root / name);
     ASSERT_FALSE(text.empty()) << name;
     for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at) {
       const std::string file = at->str(1).empty() ? name : at->str(1);
@@ -65,7 +65,7 @@ TEST(Texts, LinksLeadToWhatIsInstalledAndToHeadings) {
     }
   }
   EXPECT_GT(links, 60);
-  const std::string installed = text_of(root / "cmake/KinecalInstall.cmake");
+  const std::string installed = content_of(root / "cmake/KinecalInstall.cmake");
   for (const std::string& name : kTexts) {
     EXPECT_NE(installed.find(name), std::string::npos) << name << " is not installed";
   }

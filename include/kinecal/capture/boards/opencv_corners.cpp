@@ -36,7 +36,8 @@ std::string circles_fault() {
 std::string aruco_fault() {
   const OpencvModule* const module = opencv_module();
   if (module == nullptr || module->find_markers != nullptr) return opencv_fault("markers of ArUco");
-  return "finding markers of ArUco needs OpenCV with its module aruco: install libopencv-contrib-dev "
+  return "finding markers of ArUco needs OpenCV with its module aruco: install "
+         "libopencv-contrib-dev "
          "and "
          "build kinecal-opencv again";
 }
