@@ -120,8 +120,11 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows,
                                          const std::string& figures,
                                          const std::vector<Chart>& charts) {
   std::string drawn;
-  for (const Chart& chart : charts) {
-    if (section_of(chart) == id) drawn += html_figure(chart);
+  std::set<std::string> said;  // a caption of several charts stands below the first
+  for (Chart chart : charts) {
+    if (section_of(chart) != id) continue;
+    if (!said.insert(chart.caption).second) chart.caption.clear();
+    drawn += html_figure(chart);
   }
   if (figures.empty() && drawn.empty()) return "";
   const std::string html =
