@@ -42,16 +42,18 @@ foreach(component core capture solve io)
 endforeach()
 
 find_program(KINECAL_GZIP gzip)
-# The program's package has what its users read, that of the headers what their authors do.
+# Each package has all texts and what they link to: the headers may be installed without the program.
 set(library_doc ${CMAKE_INSTALL_DATADIR}/doc/libkinecal-dev)
-install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/MANUAL.md
-              ${PROJECT_SOURCE_DIR}/BACKGROUND.md ${PROJECT_SOURCE_DIR}/LICENSE
-              ${PROJECT_SOURCE_DIR}/cmake/package/copyright
-        DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CONCEPTS.md
-              ${PROJECT_SOURCE_DIR}/ARCHITECTURE.md ${PROJECT_SOURCE_DIR}/LICENSE
-              ${PROJECT_SOURCE_DIR}/cmake/package/copyright
-        DESTINATION ${library_doc} COMPONENT headers)
+set(texts README.md MANUAL.md BACKGROUND.md CONCEPTS.md ARCHITECTURE.md CONTRIBUTING.md LICENSE cmake/package/copyright)
+list(TRANSFORM texts PREPEND ${PROJECT_SOURCE_DIR}/)
+foreach(pair ${CMAKE_INSTALL_DOCDIR}=program ${library_doc}=headers)
+  string(REPLACE "=" ";" pair ${pair})
+  list(GET pair 0 folder)
+  list(GET pair 1 component)
+  install(FILES ${texts} DESTINATION ${folder} COMPONENT ${component})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${folder} COMPONENT ${component}
+          PATTERN "demo.sh" EXCLUDE)
+endforeach()
 if(KINECAL_GZIP)  # as Debian wants it
   set(changelog ${PROJECT_BINARY_DIR}/package/changelog)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/package/changelog.in ${changelog} @ONLY)
@@ -61,8 +63,6 @@ if(KINECAL_GZIP)  # as Debian wants it
 endif()
 install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/lintian-overrides RENAME kinecal
         DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides COMPONENT program)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${library_doc}
-        COMPONENT headers PATTERN "demo.sh" EXCLUDE)
 file(GLOB schemas ${PROJECT_SOURCE_DIR}/include/kinecal/*/schema/*.json)
 install(FILES ${schemas} DESTINATION ${CMAKE_INSTALL_DATADIR}/kinecal/schema COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/package.xml  # ROS reads it to see what is installed

@@ -29,17 +29,10 @@ function(kinecal_add_optional user library)
 endfunction()
 
 find_package(apriltag QUIET)
-find_package(OpenCV 4 QUIET COMPONENTS core imgproc features2d calib3d OPTIONAL_COMPONENTS aruco)
 kinecal_add_optional(capture apriltag TARGETS apriltag::apriltag DEBIAN libapriltag-dev
   FLAGS -lapriltag DEFINE KINECAL_HAVE_APRILTAG FOR "AprilTags")
 kinecal_add_optional(io apriltag TARGETS apriltag::apriltag DEBIAN libapriltag-dev
   FLAGS -lapriltag DEFINE KINECAL_HAVE_APRILTAG FOR "AprilTags")
-kinecal_add_optional(capture OpenCV TARGETS opencv_core opencv_imgproc opencv_features2d opencv_calib3d
-  DEBIAN libopencv-dev FLAGS "-lopencv_calib3d -lopencv_features2d -lopencv_imgproc -lopencv_core"
-  DEFINE KINECAL_HAVE_OPENCV FOR "checkerboards and grids of discs")
-kinecal_add_optional(capture OpenCV TARGETS opencv_core opencv_imgproc opencv_calib3d opencv_aruco
-  DEBIAN libopencv-dev FLAGS -lopencv_aruco DEFINE KINECAL_HAVE_ARUCO FOR "ChArUco boards")
-
 find_package(BZip2 QUIET)
 find_package(SQLite3 QUIET)
 find_package(PNG QUIET)

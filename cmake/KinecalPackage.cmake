@@ -1,6 +1,7 @@
 # `cpack` in a build tree makes Debian packages:
 #   kinecal         the program, and nothing that only a compiler needs
 #   libkinecal-dev  libraries, headers, and what you need to build against them
+#   kinecal-opencv  if there is OpenCV: the plug-in for checkerboards, grids of discs, ChArUco boards and markers of ArUco
 #   kinecal-mpi     if there is MPI: the plug-in for processes of mpirun
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "kinecal developers")
@@ -42,11 +43,16 @@ set(CPACK_DEBIAN_DEV_DESCRIPTION "libraries and headers of kinecal: calibrators 
 set(CPACK_DEBIAN_MPI_PACKAGE_NAME kinecal-mpi)
 set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "kinecal (= ${PROJECT_VERSION}), openmpi-bin")
 set(CPACK_DEBIAN_MPI_DESCRIPTION "one calibration or study in several processes of mpirun")
+set(CPACK_DEBIAN_OPENCV_PACKAGE_NAME kinecal-opencv)
+set(CPACK_DEBIAN_OPENCV_PACKAGE_DEPENDS "kinecal (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_OPENCV_DESCRIPTION "checkerboards, grids of discs and ChArUco boards in photographs, by OpenCV")
 include(CPack)
 cpack_add_component_group(kinecal)
 cpack_add_component_group(dev)
 cpack_add_component_group(mpi)
+cpack_add_component_group(opencv)
 cpack_add_component(program GROUP kinecal)
 cpack_add_component(Unspecified GROUP dev)
 cpack_add_component(headers GROUP dev)
 cpack_add_component(plugin GROUP mpi)
+cpack_add_component(opencv_plugin GROUP opencv)

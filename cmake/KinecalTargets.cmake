@@ -1,6 +1,6 @@
 # The libraries, one for each set of dependencies:
 #   kinecal::core     text ... crate               Eigen, threads
-#   kinecal::capture  capture                      core; optional: apriltag, OpenCV
+#   kinecal::capture  capture                      core; optional: apriltag, and OpenCV as a plug-in
 #   kinecal::solve    solve, trust                 core, Ceres, Boost's headers
 #   kinecal::io       study, files ... procedure       capture, solve, urdfdom, libyaml, pugixml, fmt, zlib,
 #                                                    nlohmann-json, libcrypto; optional libraries:
@@ -77,6 +77,7 @@ function(kinecal_add_units result name count alone options)
   set(units "")
   foreach(folder IN LISTS ARGN)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${folder}/*.cpp)
+    list(FILTER found EXCLUDE REGEX "/capture/opencv/")  # the plug-in: KinecalOpencv.cmake
     list(APPEND sources ${found})
     file(GLOB_RECURSE definitions CONFIGURE_DEPENDS ${folder}/*.ipp)
     foreach(file IN LISTS definitions)
@@ -178,7 +179,19 @@ kinecal_add_library(core UNIT 16
   LINK Eigen3::Eigen Threads::Threads)
 kinecal_add_library(capture UNIT 30
   FOLDERS capture
-  LINK kinecal_core)
+  LINK kinecal_core
+  PRIVATE_LINK ${CMAKE_DL_LIBS})
+# Where it looks for plug-ins: include/kinecal/capture/plugin_file.cpp.
+set(plugins ${CMAKE_INSTALL_FULL_LIBDIR}/kinecal)
+if(NOT KINECAL_INSTALL)  # fetched by another project, whose programs are anywhere
+  set(plugins ${PROJECT_BINARY_DIR}/lib/kinecal)
+endif()
+file(RELATIVE_PATH plugins_from_program ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/kinecal)
+target_compile_definitions(kinecal_capture PRIVATE
+  KINECAL_VERSION="${PROJECT_VERSION}"
+  KINECAL_PLUGINS="${plugins}"
+  KINECAL_PACKAGED_PLUGINS="/usr/${CMAKE_INSTALL_LIBDIR}/kinecal"
+  KINECAL_PLUGINS_FROM_PROGRAM="${plugins_from_program}")
 kinecal_add_library(solve UNIT 8
   FOLDERS solve
   WARM trust

@@ -9,11 +9,12 @@ as_root=""
 [ "$(id -u)" = 0 ] || as_root=sudo
 sudo() { $as_root env DEBIAN_FRONTEND=noninteractive "$@"; }
 work=$(mktemp -d)
-trap 'sudo apt-get remove -y -qq kinecal libkinecal-dev >/dev/null 2>&1 || true; rm -rf "$work"' EXIT
+trap 'sudo dpkg --remove kinecal-opencv libkinecal-dev kinecal >/dev/null 2>&1 || true; rm -rf "$work"' EXIT
 
+dpkg -s libopencv-dev >/dev/null 2>&1 || sudo apt-get install -y -qq libopencv-dev >/dev/null
 echo "== README, Install, $(date +%H:%M:%S)"
 rm -f build/release/*kinecal*.deb
-commands=$(sed -n '/^## Install/,/^[^ #]/s/^    //p' README.md | sed 's/apt install/apt install -y -qq/')
+commands=$(sed -n '/^## Install/,/^## [^I]/s/^    //p' README.md | sed 's/apt install/apt install -y -qq/')
 [ -n "$commands" ]
 echo "$commands"
 (eval "set -e; $commands") >"$work/log" 2>&1 || { tail -n 60 "$work/log"; exit 1; }
@@ -25,11 +26,19 @@ fi
 echo "== kinecal as it is installed, $(date +%H:%M:%S)"
 source=$PWD
 cd "$work"
-kinecal --version
+kinecal --version | tee version.txt
+grep -q '^finds checkerboards (OpenCV), grids of discs (OpenCV), ChArUco boards (OpenCV)' version.txt
+if ldd "$(command -v kinecal)" | grep opencv; then
+  echo "The program links OpenCV: it shall load it when it needs it." >&2
+  exit 1
+fi
 ldd "$(command -v kinecal)" | grep -q libkinecal_evaluation  # at this processor's level
-kinecal simulate "$source/examples/mobile_manipulator/mobile_manipulator.urdf" --target apriltag --poses 30 -o sim >/dev/null
-kinecal detect sim/capture.yaml --images sim/images --poses sim/poses.csv --camera sim/camera.yaml \
-  --frame head_camera_rgb_optical_frame -o samples.yaml
+for target in apriltag checkerboard; do
+  rm -rf sim samples.yaml
+  kinecal simulate "$source/examples/mobile_manipulator/mobile_manipulator.urdf" --target $target --poses 30 -o sim >/dev/null
+  kinecal detect sim/capture.yaml --images sim/images --poses sim/poses.csv --camera sim/camera.yaml \
+    --frame head_camera_rgb_optical_frame -o samples.yaml
+done
 kinecal calibrate --urdf sim/robot.urdf --config sim/calibrate.yaml --samples samples.yaml \
   --output calibrated --report report.html >calibrate.txt
 head -n 3 calibrate.txt
@@ -41,7 +50,11 @@ echo "== programs of a user's own, $(date +%H:%M:%S)"
 cmake -S "$source/tests/consumer" -B consumer -G Ninja -DCMAKE_BUILD_TYPE=Release >/dev/null
 cmake --build consumer
 consumer/consumer
-consumer/finders
+consumer/finders >finders.txt
+if grep OpenCV finders.txt; then
+  echo "The library does not find its plug-in of OpenCV." >&2
+  exit 1
+fi
 # shellcheck disable=SC2046  # words on purpose
 g++ -std=c++20 "$source/tests/consumer/io.cpp" -o by_pkg_config $(pkg-config --cflags --libs kinecal-io)
 ./by_pkg_config "$source/tests/consumer/pendulum.urdf"

@@ -255,14 +255,15 @@ struct Session {
   std::vector<CapturePose> poses;
   std::vector<Sample> samples;  ///< those of an earlier session first
   std::optional<Follower> follower;
-  std::size_t earlier = 0;                 ///< poses of an earlier session
-  std::size_t done = 0;                    ///< poses of this one
-  Stamp spent{};                           ///< on the robot's clock, for `timed` of these poses
-  std::size_t timed = 0;                   ///< poses that were not skipped
-  std::vector<Thumbnail> thumbnails = {};  ///< of what finders looked at
-  std::set<std::string> said = {};         ///< notes of finders
-  std::vector<std::string> advice = {};    ///< what was printed last: see advise()
-  SettleOptions settling = {};             ///< when the robot is still and has arrived
+  std::size_t earlier = 0;  ///< poses of an earlier session
+  std::size_t done = 0;     ///< poses of this one
+  Stamp spent{};            ///< on the robot's clock, for `timed` of these poses
+  std::size_t timed = 0;    ///< poses that were not skipped
+  std::vector<std::string> earlier_views = {};  ///< of an earlier session's contact sheets
+  std::vector<Thumbnail> thumbnails = {};       ///< of what finders looked at
+  std::set<std::string> said = {};              ///< notes of finders
+  std::vector<std::string> advice = {};         ///< what was printed last: see advise()
+  SettleOptions settling = {};                  ///< when the robot is still and has arrived
 
   /// Prints, writes and follows what came of a pose.
   void take(CapturedPose captured) {
@@ -392,6 +393,7 @@ int capture(const CaptureOptions& options) {
   session.robot = parse_urdf(session.urdf, options.urdf);
   session.settling.continuous = continuous_joints(session.robot);
   const std::size_t before = session.samples.size();
+  if (before > 0 && !options.sheet.empty()) session.earlier_views = read_sheets(options.sheet);
   check_chains(options.config, config, session.robot);
   bool is_complete = false;
   if (!options.manual) {
@@ -407,8 +409,9 @@ int capture(const CaptureOptions& options) {
   }
   const std::string lost = is_complete ? "" : session.run(config);
   if (!session.thumbnails.empty()) {
-    say("{}: what was found in {}\n", write_sheets(options.sheet, session.thumbnails),
-        counted(session.thumbnails.size(), "view"));
+    say("{}: what was found in {}\n",
+        write_sheets(options.sheet, session.thumbnails, session.earlier_views),
+        counted(session.earlier_views.size() + session.thumbnails.size(), "view"));
   }
   if (is_complete) {
     say("{}: {} from before; all poses of {} are captured\n", options.output,

@@ -340,7 +340,7 @@ int rpy(const RpyOptions& options);
 /// Name, version and the instruction set of the evaluation.
 std::string version();
 
-/// What this build finds in images, and what it was built without: "finds AprilTags (libapriltag)".
+/// What this program finds in images, and what it does not: "finds AprilTags (libapriltag)".
 std::string found_targets();
 
 /// Why this build cannot find a target of `init` or `simulate` in photographs; empty if it can.

@@ -238,9 +238,9 @@ std::string text_of(const Assembled& a, const Assembled& b, const Comparison& al
     }
     text += table.str();
   }
+  if (const std::string pose = pose_text(a, all); !pose.empty()) text += "\n" + pose;
   if (!all.others.empty()) text += "\nNot compared\n" + others_text(all);
-  const std::string pose = pose_text(a, all);
-  return text + (pose.empty() ? "" : "\n" + pose);
+  return text;
 }
 
 std::string json_of(const Assembled& a, const Assembled& b, const Comparison& all) {
@@ -290,8 +290,6 @@ std::string page_of(const Assembled& a, const Assembled& b, const Comparison& al
                                  list == &all.moved ? "" : "not significant"});
     }
   }
-  const std::string head =
-      pose_text(a, all) + (all.others.empty() ? "" : "Not compared: " + others_text(all).substr(2));
   const std::string title = a.result.folder + " and " + b.result.folder;
   std::string body = fmt::format(
       "<header class=\"verdict {}\">\n"
@@ -302,10 +300,18 @@ std::string page_of(const Assembled& a, const Assembled& b, const Comparison& al
       all.moved.size(), counted(all.moved.size() + all.equal.size(), "parameter"),
       detail::html_text(title),
       fmt::format("by more than {} standard deviations of the difference", kMoved),
-      detail::html_paragraphs(head));
+      detail::html_paragraphs(pose_text(a, all)));
+  body += "<div class=\"pair\">";
   for (const Chart& chart : parameter_charts(data, "How much more the second result has"))
     body += detail::html_figure(chart);
-  body += detail::html_table(rows, "ttnnnnn") + "<details><summary>As text</summary><pre>" +
+  body += "</div>\n" + detail::html_table(rows, "ttnnnnn") + "</section>\n";
+  if (!all.others.empty()) {
+    std::vector<std::vector<std::string>> others = {{"parameter", "why"}};
+    for (const NotCompared& of : all.others) others.push_back({of.name, of.why});
+    body += "<section id=\"others\"><h2>Not compared</h2>\n" + detail::html_table(others, "tl") +
+            "</section>\n";
+  }
+  body += "<section id=\"text\"><details><summary>As text</summary><pre>" +
           detail::html_lines(text_of(a, b, all)) + "</pre></details></section>\n</main>\n";
   return html_file({title, version(), body, ""});
 }

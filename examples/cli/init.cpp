@@ -440,7 +440,17 @@ int init(const InitOptions& options) {
   const bool streams = std::any_of(named.begin(), named.end(), detail::is_stream);
   if (streams || is_standard_output(options.output)) return kDone;  // no command could be pasted
   InputOptions inputs{.urdf = options.urdf, .config = options.output, .samples = options.from};
-  if (options.from.empty()) {
+  const InitAnswers& answers = made.answers;
+  const bool has_photographs = answers.camera_type == "camera2d" && is_board(answers.target);
+  if (options.from.empty() && has_photographs) {
+    inputs.samples = {"samples.yaml"};
+    const ShellCommand detect =
+        ShellCommand{"kinecal", "detect", shell_file(capture_file(options)), "--images", "images"}
+            .add({"--poses", "poses.csv", "--camera", "camera.yaml"})
+            .add_option("--frame", {answers.camera})
+            .add({"-o", "samples.yaml"});
+    say("next: {} && {}\n", detect.str(), calibrate_command(inputs).str());
+  } else if (options.from.empty()) {
     say("next: {}\n", ShellCommand{"kinecal", "check"}.add(input_options(inputs)).str());
   } else if (const std::string columns = columns_file(options); !columns.empty()) {
     inputs.samples = {"samples.yaml"};

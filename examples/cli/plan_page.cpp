@@ -30,6 +30,15 @@ std::string curve_table(const PoseCurve& curve) {
   return detail::html_table(rows, "nnn");
 }
 
+/// What is found, without what the headline says.
+std::string beside_headline(const PlanFindings& findings) {
+  std::string about = findings.about;
+  for (const std::string& said : {findings.title + ": ", "; " + findings.title}) {
+    if (const auto at = about.find(said); at != std::string::npos) about.erase(at, said.size());
+  }
+  return about;
+}
+
 }  // namespace
 
 std::string plan_page(const StudyInput& input, const PlanFindings& findings) {
@@ -45,7 +54,7 @@ std::string plan_page(const StudyInput& input, const PlanFindings& findings) {
       "<h3>In numbers</h3>{}</figure></div>\n</section>\n"
       "<section id=\"parameters\"><h2>What these poses determine</h2>\n{}</section>\n{}</main>\n",
       findings.reached ? "good" : "care", detail::html_name(input.robot.name()),
-      detail::html_text(findings.title), detail::html_paragraphs(findings.about),
+      detail::html_text(findings.title), detail::html_paragraphs(beside_headline(findings)),
       detail::html_figure(pose_curve_chart(findings.curve)), curve_table(findings.curve), lost,
       study_inputs(input));
   return html_file({input.robot.name() + ": " + findings.title, version(), body, ""});

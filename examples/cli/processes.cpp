@@ -17,6 +17,7 @@
 #include <string_view>
 
 #include "commands.hpp"
+#include "kinecal/capture/plugin_file.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/text/printable.hpp"
 #include "mpi/kinecal_mpi.h"
@@ -32,23 +33,8 @@ int number_started() {
   return 1;
 }
 
-/// The plug-in: beside this program, in its build or where it was installed; or in the installation of
-/// the library that this program was linked with.
-std::filesystem::path plugin_file() {
-  std::error_code error;
-  const std::filesystem::path program =
-      std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  for (const std::filesystem::path& folder :
-       {program / KINECAL_PLUGINS_FROM_PROGRAM, program / ".." / "lib" / "kinecal",
-        std::filesystem::path(KINECAL_PLUGINS)}) {
-    std::filesystem::path file = folder / "kinecal_mpi.so";
-    if (std::filesystem::exists(file, error)) return file;
-  }
-  return {};
-}
-
 const KinecalMpi* join(int started) {
-  const std::filesystem::path file = plugin_file();
+  const std::filesystem::path file = detail::plugin_file("kinecal_mpi.so");
   if (file.empty()) {
     throw InputError(
         fmt::format("this is one of {} processes, and there is no kinecal_mpi.so, by which they "

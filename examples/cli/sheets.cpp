@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/text_file.hpp"
 #include "output_file.hpp"
 
 namespace kinecal::cli {
@@ -15,8 +16,24 @@ void check_sheets(const std::string& output, const std::vector<std::string>& inp
   } while (std::filesystem::exists(sheet_name(output, number)));
 }
 
-std::string write_sheets(const std::string& output, const std::vector<Thumbnail>& thumbnails) {
-  const std::vector<std::string> sheets = contact_sheets(thumbnails);
+std::vector<std::string> read_sheets(const std::string& output) {
+  std::vector<std::string> views;
+  for (std::size_t number = 0; std::filesystem::exists(sheet_name(output, number)); ++number) {
+    const std::string name = sheet_name(output, number);
+    const auto found = views_of_sheet(detail::read_text_file(name));
+    if (!found) {
+      throw OutputError(name +
+                        ": exists and is no contact sheet of this program, so --resume does not "
+                        "replace it; choose another name");
+    }
+    views.insert(views.end(), found->begin(), found->end());
+  }
+  return views;
+}
+
+std::string write_sheets(const std::string& output, const std::vector<Thumbnail>& thumbnails,
+                         const std::vector<std::string>& earlier) {
+  const std::vector<std::string> sheets = contact_sheets(thumbnails, earlier);
   std::string names;
   for (std::size_t number = 0; number < sheets.size(); ++number) {
     const std::string name = sheet_name(output, number);

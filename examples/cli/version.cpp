@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "commands.hpp"
-#include "kinecal/capture/boards/opencv_circles.hpp"
 #include "kinecal/capture/boards/opencv_corners.hpp"
 #include "kinecal/capture/tags/april_tags.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
@@ -31,7 +30,7 @@ std::string found_targets() {
     list += (list.empty() ? "" : ", ") + std::string(target);
   }
   std::string text = "finds " + (found.empty() ? "no boards or tags" : found);
-  if (!others.empty()) text += "\nbuilt without " + others;
+  if (!others.empty()) text += "\ndoes not find " + others;
   return text;
 }
 

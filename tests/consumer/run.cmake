@@ -13,7 +13,7 @@ if(MODE STREQUAL headers)
                   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND ${CMAKE_COMMAND} --install ${WORK}/bare --component headers
                           --prefix ${prefix} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
-  foreach(file README.md CONCEPTS.md ARCHITECTURE.md copyright examples/02_calibrate.cpp)
+  foreach(file README.md MANUAL.md CONCEPTS.md ARCHITECTURE.md copyright examples/02_calibrate.cpp)
     if(NOT EXISTS ${prefix}/share/doc/libkinecal-dev/${file})
       message(FATAL_ERROR "${file} is not installed")
     endif()
@@ -56,7 +56,7 @@ if(PROGRAM AND NOT MODE STREQUAL source)
   if(NOT installed STREQUAL built)
     message(FATAL_ERROR "installed: ${installed}built: ${built}")
   endif()
-  foreach(file man/man1/kinecal.1 bash-completion/completions/kinecal
+  foreach(file doc/kinecal/README.md doc/kinecal/CONTRIBUTING.md doc/kinecal/examples/pipe_robot/README.md man/man1/kinecal.1 bash-completion/completions/kinecal
                zsh/vendor-completions/_kinecal)
     file(GLOB installed ${prefix}/share/${file} ${prefix}/share/${file}.gz)
     if(NOT installed)

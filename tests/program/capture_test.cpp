@@ -99,9 +99,30 @@ TEST_F(CaptureProgram, ResumesWhereItEnded) {
                               ContainsRegex("pose 6 of 6: .*features\n")))
       << "nothing is left after the last pose";
   EXPECT_EQ(samples(), 6);
-  EXPECT_NE(read("views.html"), sheet);
+  const std::string whole = read("views.html"), views = sheet.substr(0, sheet.find("</main>"));
+  EXPECT_TRUE(whole.starts_with(views)) << "the views of the first session come first";
+  const auto count_of = [](const std::string& page) {
+    int views = 0;
+    for (std::size_t at = 0; (at = page.find("<figure", at)) != std::string::npos; ++at) ++views;
+    return views;
+  };
+  const int shown = count_of(sheet), all = count_of(whole);
+  EXPECT_GT(all, shown);
+  EXPECT_THAT(rest.out,
+              HasSubstr("views.html: what was found in " + std::to_string(all) + " views"));
+  EXPECT_THAT(whole, HasSubstr("id=\"view-" + std::to_string(shown + 1) + "-title\""));
   EXPECT_EQ(capture("--resume").out,
             "samples.yaml: 6 samples from before; all poses of sim/poses.yaml are captured\n");
+}
+
+TEST_F(CaptureProgram, ResumingReplacesNoPageOfOthers) {
+  simulate(3);
+  ASSERT_EQ(capture("").code, 0);
+  std::ofstream(folder_ / "views.html") << "<!DOCTYPE html><title>notes</title>";
+  const Outcome rest = capture("--resume --contact-sheet views.html");
+  EXPECT_EQ(rest.code, 1);
+  EXPECT_THAT(rest.err, HasSubstr("views.html: exists and is no contact sheet"));
+  EXPECT_EQ(read("views.html"), "<!DOCTYPE html><title>notes</title>");
 }
 
 TEST_F(CaptureProgram, EndsWithADeadCamera) {

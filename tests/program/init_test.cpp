@@ -222,7 +222,11 @@ TEST_F(Init, WritesTheCaptureThatGoesWithItsConfiguration) {
       "camera2d";
   const Outcome made = init("fetch", options);
   EXPECT_EQ(made.code, 0) << made.err;
-  EXPECT_THAT(made.out, HasSubstr("wrote capture.yaml\n  fill in what is zero"));
+  EXPECT_THAT(made.out,
+              AllOf(HasSubstr("wrote capture.yaml\n  fill in what is zero"),
+                    HasSubstr("next: kinecal detect capture.yaml --images images --poses poses.csv "
+                              "--camera camera.yaml --frame head_camera_rgb_optical_frame "
+                              "-o samples.yaml && kinecal calibrate --urdf ")));
   EXPECT_THAT(read("calibrate.yaml"), HasSubstr("{name: apriltag_grid, x: true"));
   EXPECT_THAT(read("capture.yaml"),
               AllOf(HasSubstr("AprilTagFinder2d"), HasSubstr("chain_sensor_name: arm"),

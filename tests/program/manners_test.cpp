@@ -447,21 +447,32 @@ TEST_F(Manners, NoArgumentIsTheHelp) {
   EXPECT_THAT(bare.out, AllOf(HasSubstr("calibrate the robot"), Not(HasSubstr("describe"))));
 }
 
-TEST_F(Manners, TheVersionSaysWhatThisBuildFindsAndInitNotesWhatItDoesNot) {
-  const std::string version = kinecal("--version").out;
-  const auto built_without = version.find("built without ");
-  EXPECT_THAT(version, AllOf(testing::StartsWith("kinecal "), HasSubstr("OpenCV"),
-                             HasSubstr("AprilTags (libapriltag)")));
-  for (const auto& [target, name] : {std::pair("checkerboard", "checkerboards (OpenCV)"),
-                                     std::pair("charuco", "ChArUco boards (OpenCV)"),
-                                     std::pair("apriltag", "AprilTags (libapriltag)")}) {
-    const bool is_missing = version.find(name) > built_without;
-    const Outcome made = kinecal(std::string("init --cameras c --force --target ") + target);
-    EXPECT_EQ(made.code, 0) << made.err;
-    EXPECT_EQ(made.err.find("note: this kinecal was built without") != std::string::npos,
-              is_missing)
-        << target << made.err;
+TEST_F(Manners, TheVersionSaysWhatThisProgramFindsAndInitNotesWhatItDoesNot) {
+  for (const std::string& plugins : {std::string(), "KINECAL_PLUGINS=" + folder_.string() + " "}) {
+    const std::string program = plugins + test::kinecal_program();
+    const std::string version = run(program + " --version").out;
+    const auto others = version.find("does not find ");
+    EXPECT_THAT(version, AllOf(testing::StartsWith("kinecal "), HasSubstr("OpenCV"),
+                               HasSubstr("AprilTags (libapriltag)")));
+    for (const auto& [target, name] : {std::pair("checkerboard", "checkerboards (OpenCV)"),
+                                       std::pair("charuco", "ChArUco boards (OpenCV)"),
+                                       std::pair("apriltag", "AprilTags (libapriltag)")}) {
+      const bool is_missing = version.find(name) > others;
+      EXPECT_TRUE(is_missing || plugins.empty() || target == std::string("apriltag")) << version;
+      const Outcome made = run(program + " init --cameras c --force --target " + target);
+      EXPECT_EQ(made.code, 0) << made.err;
+      EXPECT_EQ(made.err.find("note: ") != std::string::npos, is_missing) << target << made.err;
+    }
   }
+}
+
+TEST_F(Manners, APlugInThatCannotBeLoadedIsNamed) {
+  write("kinecal_opencv.so", "no library");
+  const Outcome made = run("KINECAL_PLUGINS=" + folder_.string() + " " + test::kinecal_program() +
+                           " init --cameras c --target checkerboard");
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, AllOf(HasSubstr("kinecal_opencv.so cannot be loaded: "),
+                              HasSubstr("install the package kinecal-opencv again")));
 }
 
 TEST_F(Manners, WhatAHostileFileRepeatsIsCounted) {

@@ -267,6 +267,21 @@ TEST_F(Recheck, ComparesTwoResults) {
   EXPECT_THAT(same.out, AllOf(StartsWith("0 of 10 parameters moved"), HasSubstr("moved by 0 mm")));
 }
 
+TEST_F(Recheck, DifferencesStandBeforeWhatIsNotCompared) {
+  calibrate("a");
+  slip(old_, "elbow", 0.004);
+  calibrate("b", "--hold lift");
+  const Outcome result = run(test::kinecal_program() + " compare a b --report c.html");
+  EXPECT_EQ(result.code, 0) << result.err;
+  for (const std::string& text : {result.out, read("c.html")}) {
+    const auto difference = text.find("at the worst of "), heading = text.find("Not compared"),
+               held = text.rfind("lift");
+    ASSERT_NE(heading, std::string::npos) << text;
+    EXPECT_LT(difference, heading);
+    EXPECT_LT(heading, held);
+  }
+}
+
 TEST_F(Recheck, ComparesAResultWithOneThatBeganFromIt) {
   calibrate("a");
   const YAML::Node values = YAML::Load(read("a/calibration.yaml"));

@@ -2,6 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+#include <regex>
+
 #include "support/paths.hpp"
 #include "support/run_program.hpp"
 
@@ -36,6 +40,36 @@ class ReportPage : public test::ProgramTest {
     return run(interpreter + " " + (folder / call).string());
   }
 };
+
+/// Ten lines that free two joint zeros and a camera.
+TEST_F(ReportPage, TheConfigurationInReadmeCalibratesTheExampleRobot) {
+  std::ifstream file(fs::path(test::source_folder()) / "README.md");
+  const std::string readme{std::istreambuf_iterator<char>(file), {}};
+  const std::string begin = "```yaml\n";
+  const std::size_t at = readme.find(begin);
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t from = at + begin.size();
+  write("calibrate.yaml", readme.substr(from, readme.find("```", from) - from));
+  const Outcome made = calibrate("--dry-run");
+  EXPECT_EQ(made.code, 0) << made.out << made.err;
+  EXPECT_THAT(
+      made.out,
+      testing::AllOf(HasSubstr("\n  shoulder_lift_joint "), HasSubstr("\n  elbow_flex_joint "),
+                     HasSubstr("\n  head_camera_rgb_joint_c "),
+                     HasSubstr("_a _b _c turn it about its x, y, z (rotation vector)\n"),
+                     Not(HasSubstr("\n  shoulder_pan_joint "))));
+}
+
+/// The same figure is the same in table and chart, and poses that nobody knew have no value before.
+TEST_F(ReportPage, ChartsHaveTheFiguresOfTheTables) {
+  ASSERT_EQ(calibrate("--dry-run --report a.html --report a.json").code, 0);
+  const std::string page = read("a.html");
+  const std::regex row("<bdi>elbow_flex_joint</bdi></td><td>([^<]+)</td><td>([^<]+)</td>");
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(page, found, row));
+  EXPECT_THAT(page, HasSubstr(">" + std::regex_replace(found.str(1), std::regex("-"), "\u2212") +
+                              " ± " + found.str(2) + "°<"));
+}
 
 TEST_F(ReportPage, NamesInputsCommandAndDay) {
   ASSERT_EQ(calibrate("--dry-run --report 'my report.html'").code, 0);

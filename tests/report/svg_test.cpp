@@ -128,7 +128,7 @@ TEST(Svg, IsWellFormedAndDescribed) {
   const test::SvgChart chart(svg);
   EXPECT_STREQ(chart.root().attribute("role").value(), "img");
   EXPECT_STREQ(chart.root().attribute("aria-labelledby").value(), "chart-title chart-desc");
-  EXPECT_STREQ(chart.root().attribute("viewBox").value(), "0 0 480 100");
+  EXPECT_STREQ(chart.root().attribute("viewBox").value(), "0 0 420 100");
   EXPECT_EQ(chart.text("//title[@id='chart-title']"), "A <title>");
   EXPECT_EQ(chart.text("//desc[@id='chart-desc']"), "A & B");
   EXPECT_EQ(chart.text("//text/title").size(), 5014u) << "the whole name";
@@ -149,7 +149,7 @@ TEST(Svg, AFileOfItsOwnHasItsStyleAndNoVariables) {
 }
 
 TEST(Svg, AFileOfItsOwnHasASizeOnPaper) {
-  const std::string svg = Drawing("chart", "title", 240.0).str("words");  // 480 x 240
+  const std::string svg = Drawing("chart", "title", 210.0).str("words");  // 420 x 210
   const test::SvgChart usual(stand_alone(svg)), narrow(stand_alone(svg, 85.0));
   EXPECT_STREQ(usual.root().attribute("width").value(), "160mm");
   EXPECT_STREQ(usual.root().attribute("height").value(), "80mm");

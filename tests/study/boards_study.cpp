@@ -21,7 +21,6 @@
 #include <utility>
 
 #include "kinecal/capture/boards/board_order.hpp"
-#include "kinecal/capture/boards/opencv_circles.hpp"
 #include "kinecal/capture/boards/opencv_corners.hpp"
 #include "kinecal/capture/finders/april_tag_finder.hpp"
 #include "kinecal/capture/finders/checkerboard_finder.hpp"

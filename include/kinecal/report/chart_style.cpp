@@ -9,7 +9,7 @@
 namespace kinecal {
 
 std::string chart_style() {
-  return R"(.chart { display: block; width: 100%; max-width: 42rem; height: auto; font: 13px system-ui, "DejaVu Sans", sans-serif; }
+  return R"(.chart { display: block; width: 100%; max-width: 36rem; height: auto; font: 13px system-ui, "DejaVu Sans", sans-serif; }
 .chart text { fill: var(--ink, #1f2328); }
 .chart text.tick, .chart text.small { font-size: 12px; }
 .chart text.tick, .chart text.name, .chart text.quiet { fill: var(--muted, #55616c); }
@@ -79,7 +79,7 @@ namespace {
 [[nodiscard]] std::string style_without_variables() {
   std::string style = chart_style();
   constexpr std::string_view kSize =
-      "display: block; width: 100%; max-width: 42rem; height: auto; ";
+      "display: block; width: 100%; max-width: 36rem; height: auto; ";
   style.erase(style.find(kSize), kSize.size());  // of the page; a file has its own
   std::string plain;
   std::size_t at = 0;

@@ -74,8 +74,10 @@ std::string html_name(std::string_view name) {
 }
 
 std::string html_figure(const Chart& chart) {
-  return fmt::format("<figure><h3>{}</h3>{}<figcaption>{}</figcaption></figure>\n",
-                     html_text(chart.title), chart.svg, html_text(chart.caption));
+  const std::string caption =
+      chart.caption.empty() ? "" : "<figcaption>" + html_text(chart.caption) + "</figcaption>";
+  return fmt::format("<figure><h3>{}</h3>{}{}</figure>\n", html_text(chart.title), chart.svg,
+                     caption);
 }
 
 /// Wraps a table so that it scrolls separately, also with the keyboard.
@@ -118,8 +120,11 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows,
                                          const std::string& figures,
                                          const std::vector<Chart>& charts) {
   std::string drawn;
-  for (const Chart& chart : charts) {
-    if (section_of(chart) == id) drawn += html_figure(chart);
+  std::set<std::string> said;  // a caption of several charts stands below the first
+  for (Chart chart : charts) {
+    if (section_of(chart) != id) continue;
+    if (!said.insert(chart.caption).second) chart.caption.clear();
+    drawn += html_figure(chart);
   }
   if (figures.empty() && drawn.empty()) return "";
   const std::string html =
@@ -232,7 +237,17 @@ namespace {
   return html + "</div>\n";
 }
 
+/// The frames whose pose was not known: it was found, not corrected.
+[[nodiscard]] std::set<std::string> unknown_frames(const ReportData& data) {
+  std::set<std::string> unknown;
+  for (const StepResult& step : data.steps) {
+    unknown.insert(step.starts.frames.begin(), step.starts.frames.end());
+  }
+  return unknown;
+}
+
 [[nodiscard]] std::string parameter_figures(const ReportData& data) {
+  const std::set<std::string> unknown = unknown_frames(data);
   std::vector<std::vector<std::string>> rows = {
       {"parameter", "calibrated", "±", "from", "unit", ""}};
   for (const ReportedParameter& parameter : data.parameters) {
@@ -240,10 +255,17 @@ namespace {
     const auto [value, unit] = for_people(parameter.value, parameter.unit);
     rows.push_back({parameter.name, value,
                     parameter.sigma ? for_people(*parameter.sigma, parameter.unit).first : "-",
-                    for_people(parameter.initial, parameter.unit).first, unit, parameter.note});
+                    unknown.contains(parameter.owner)
+                        ? "-"
+                        : for_people(parameter.initial, parameter.unit).first,
+                    unit, parameter.note});
   }
-  return unobservable_text(data) + "<p>With one standard deviation.</p>\n" +
-         html_table(rows, "tnnntt");
+  const bool turns = std::any_of(data.parameters.begin(), data.parameters.end(),
+                                 [](const ReportedParameter& parameter) {
+                                   return turns_frame(parameter.name, parameter.owner);
+                                 });
+  return unobservable_text(data) + "<p>&plusmn; is one standard deviation" + (turns ? "; " : "") +
+         (turns ? kAxesOfFrames : "") + ".</p>\n" + html_table(rows, "tnnntt");
 }
 
 /// What each step of a search bought, and what was tried and not freed.
@@ -303,10 +325,7 @@ namespace {
 /// Significant changes, most important first: relative to the useful deviation.
 [[nodiscard]] std::vector<const ReportedParameter*> largest_changes(const ReportData& data) {
   std::vector<const ReportedParameter*> all;
-  std::set<std::string> unknown;  // an unknown pose is not corrected
-  for (const StepResult& step : data.steps) {
-    unknown.insert(step.starts.frames.begin(), step.starts.frames.end());
-  }
+  const std::set<std::string> unknown = unknown_frames(data);
   for (const ReportedParameter& parameter : data.parameters) {
     if (unknown.contains(parameter.owner)) continue;
     if (parameter.note.empty() && parameter.sigma && parameter.value != parameter.initial) {

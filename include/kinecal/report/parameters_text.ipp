@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/text.hpp"
@@ -86,11 +88,20 @@ namespace kinecal::detail {
 [[nodiscard]] inline std::string parameters_text(const Findings& findings, Figures figures) {
   std::string text;
   const std::string changed = parameter_rows(findings, false, figures);
-  if (!changed.empty()) text += "Parameters; +- is one standard deviation\n" + changed;
   const std::string found = parameter_rows(findings, true, figures);
+  const ParameterTable& table = findings.result.table;
+  const auto is_turn = [&](int i) {
+    const std::string owner = table[i].name.substr(0, table[i].name.rfind('_'));
+    return turns_frame(table[i].name, owner) && table.find(owner + "_x") >= 0;
+  };
+  const std::vector<int>& rows = findings.result.calibrated;
+  const bool turns = std::any_of(rows.begin(), rows.end(), is_turn);
+  const std::string about = "; +- is one standard deviation" +
+                            (turns ? "; " + std::string(kAxesOfFrames) : std::string()) + "\n";
+  if (!changed.empty()) text += "Parameters" + about + changed;
   if (!found.empty()) {
-    text += std::string(text.empty() ? "" : "\n") +
-            "Poses that were not known; +- is one standard deviation\n" + found;
+    text += (text.empty() ? "" : "\n") + std::string("Poses that were not known") +
+            (text.empty() ? about : "\n") + found;
   }
   for (const StepResult& step : findings.result.steps) {
     if (step.starts.searched()) text += "  " + to_string(step.starts) + "\n";

@@ -17,7 +17,7 @@
 namespace kinecal::detail {
 
 /// Width of every chart: on a phone, size 13 then appears as 10.
-inline constexpr double kChartWidth = 480.0;
+inline constexpr double kChartWidth = 420.0;
 /// Font sizes: normal, and those of the classes "small" and "tick".
 inline constexpr double kFontSize = 13.0, kSmallFont = 12.0;
 

@@ -62,6 +62,13 @@ namespace detail {
 /// A value in its displayed unit, and the unit: degrees for "rad", mm for "m", % for "1".
 [[nodiscard]] std::pair<std::string, std::string> for_people(double value, const std::string& unit);
 
+/// What the axes of a frame's parameters are, for those who meet head_joint_x ... head_joint_c first in a report.
+inline constexpr const char* kAxesOfFrames =
+    "_x _y _z shift a frame, _a _b _c turn it about its x, y, z (rotation vector)";
+
+/// True for a parameter that turns a frame: "head_joint_a" of "head_joint".
+[[nodiscard]] bool turns_frame(const std::string& name, const std::string& owner);
+
 }  // namespace detail
 
 }  // namespace kinecal

@@ -246,8 +246,38 @@ async function checkWidth(check, page, width) {
   check.expect(wide === null, `the page is wider than ${width} pixels: ${wide?.join(", ")}`);
 }
 
+/// A wide screen is used, not a column in its middle.
+async function checkDesktop(check, page) {
+  const used = await page.evaluate(`document.querySelector("main").getBoundingClientRect().width / innerWidth`);
+  check.expect(used > 0.85, `${Math.round(100 * used)} % of a wide screen are used`);
+}
+
+/// Labels of charts can be read on a phone.  Correlations of many parameters are a wider picture.
+async function checkLabels(check, page) {
+  const small = await page.evaluate(`[...document.querySelectorAll("svg.chart")].filter((s) =>
+    s.getBoundingClientRect().width > 0 && s.viewBox.baseVal.width <= 420).map((s) => [
+      s.querySelector("title").textContent, s.getBoundingClientRect().width / s.viewBox.baseVal.width *
+      Math.min(...[...s.querySelectorAll("text")].map((t) => parseFloat(getComputedStyle(t).fontSize)))])
+    .filter(([, size]) => size < 9.5).map(([title, size]) => title + ": " + size.toFixed(1))`);
+  check.expect(!small.length, `labels of less than 9.5 pixels: ${small.join(", ")}`);
+}
+
+/// No sentence stands twice, but in "The report as text".
+async function checkSentences(check, page) {
+  const twice = await page.evaluate(`(() => {
+    const all = [...document.querySelectorAll("p, li, figcaption, h1")].filter((e) =>
+      !e.closest("details") && !e.querySelector("p, li")).flatMap((e) =>
+      e.textContent.split(/[.;:]\\s/)).map((t) => t.trim()).filter((t) => t.length > 30);
+    return all.filter((t, i) => all.indexOf(t) !== i);
+  })()`);
+  check.expect(!twice.length, `a sentence stands twice: ${twice[0]}`);
+}
+
 /// On paper nothing is cut: what is wider than A4 would shrink the whole page, and nobody can scroll.
 async function checkPaper(check, page) {
+  const heads = await page.evaluate(`[...document.querySelectorAll("table.numbers thead")].filter((e) =>
+    getComputedStyle(e).display !== "table-header-group").length`);
+  check.expect(heads === 0, `on paper, ${heads} tables do not repeat their headers`);
   await checkWidth(check, page, A4);
   const cut = await page.evaluate(`[...document.querySelectorAll("body *")].filter((e) =>
     getComputedStyle(e).overflowX !== "visible" && e.scrollWidth > e.clientWidth + 1 && e.clientWidth > 0 &&
@@ -267,6 +297,8 @@ async function checkReport(browser, file, folder) {
   await check.visit({ width: WIDE, height: 1000 }, async (page) => {
     await pictures(check, page, folder, `${name}-${WIDE}-light`);
     await checkText(check, page);
+    await checkSentences(check, page);
+    await checkDesktop(check, page);
     await checkWidth(check, page, WIDE);
     await checkContrast(check, page);
   });
@@ -280,6 +312,7 @@ async function checkReport(browser, file, folder) {
   await check.visit({ width: PHONE, height: 800, dark: true, scale: 2 }, async (page) => {
     await pictures(check, page, folder, `${name}-${PHONE}-dark`);
     await checkWidth(check, page, PHONE);
+    await checkLabels(check, page);
   });
   await check.visit({ width: A4, height: 1000, media: "print" }, (page) => checkPaper(check, page));
   await check.visit({ width: WIDE, height: 1000, webgl: false }, async (page) => {

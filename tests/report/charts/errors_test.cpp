@@ -75,7 +75,7 @@ TEST(HeldOutCharts, BarsAreAsLongAsTheirFigures) {
   const double unit = bars[0].attribute("width").as_double() / 8.0;
   EXPECT_NEAR(bars[1].attribute("width").as_double(), 2.0 * unit, 0.1);
   EXPECT_NEAR(bars[2].attribute("width").as_double(), 3.0 * unit, 0.1);
-  EXPECT_EQ(chart.text("//text[@class='small figure'][3]"), "3 mm");
+  EXPECT_EQ(chart.text("//text[@class='small figure'][3]"), "3.000 mm");
 }
 
 }  // namespace

@@ -43,15 +43,18 @@ TEST(ParameterCharts, MarksAndIntervalsStandAtTheirValues) {
   const std::vector<double> ends = test::numbers_of(intervals[1]);
   EXPECT_NEAR(chart.value('x', ends[0]), -12.0 - 1.96 * 2.0, kDrawn);
   EXPECT_NEAR(chart.value('x', ends[2]), -12.0 + 1.96 * 2.0, kDrawn);
-  EXPECT_EQ(chart.all("//text[.='5.0 ± 2.0 mm']").size(), 1u);
+  EXPECT_EQ(chart.all("//text[.='5.000 ± 1.000 mm']").size(), 1u);
 }
 
 TEST(ParameterCharts, TheCaptionSaysWhatTheNumbersAre) {
-  const ReportData data = with({{"camera_x", "camera", "m", 0.105, 0.1, 1e-3, ""}});
+  const ReportData data = with({{"camera_x", "camera", "m", 0.105, 0.1, 1e-3, ""},
+                                {"camera_a", "camera", "rad", 0.1, 0.0, 1e-3, ""}});
+  EXPECT_EQ(parameter_charts(data)[1].caption, "") << "the caption stands once";
   EXPECT_THAT(parameter_charts(data)[0].caption,
               testing::StartsWith("What the calibration added;"));
-  EXPECT_THAT(parameter_charts(data, "The difference")[0].caption,
-              testing::StartsWith("The difference; bars, ±: 95 % interval."));
+  EXPECT_THAT(
+      parameter_charts(data, "The difference")[0].caption,
+      testing::StartsWith("The difference; ±: one standard deviation; bars: 95 % interval."));
 }
 
 TEST(ParameterCharts, WhatIsNotDeterminedIsHatchedAndHasNoFigure) {
@@ -72,7 +75,7 @@ TEST(ParameterCharts, AParameterFarBeyondTheOthersDoesNotHideThem) {
   EXPECT_EQ(chart.all("//circle[title]").size(), 8u);
   EXPECT_NEAR(chart.value('x', chart.all("//circle[title]")[7].attribute("cx").as_double()), 8.0,
               0.05);
-  EXPECT_EQ(chart.all("//text[.='1250.00 ± 0.20 mm']").size(), 1u);
+  EXPECT_EQ(chart.all("//text[.='1250.000 ± 0.100 mm']").size(), 1u);
 }
 
 TEST(ParameterCharts, AParameterThatIsHardlyDeterminedDoesNotSetTheAxis) {

@@ -37,6 +37,25 @@ TEST(ContactSheet, AThumbnailIsTheMeanOfPixelsAndItsMarksStayWhereTheyWere) {
   EXPECT_DOUBLE_EQ(small.marks[0].v, 30.0);
 }
 
+TEST(ContactSheet, GoesOnAfterTheViewsOfAnEarlierOne) {
+  const auto view = [](const std::string& name) {
+    return thumbnail(GrayImage(8, 8), {{2, 2, ""}}, name, "");
+  };
+  std::vector<Thumbnail> first;
+  for (std::size_t i = 0; i + 1 < kViewsOfSheet; ++i) first.push_back(view("a</figure>\n.png"));
+  const auto earlier = views_of_sheet(sheet(first));
+  ASSERT_TRUE(earlier);
+  EXPECT_EQ(earlier->size(), first.size()) << "a name is no end of a view";
+  const std::vector<Thumbnail> more = {view("b.png"), view("c.png")};
+  const std::vector<std::string> both = contact_sheets(more, *earlier);
+  std::vector<Thumbnail> all = first;
+  all.insert(all.end(), more.begin(), more.end());
+  EXPECT_EQ(both, contact_sheets(all));
+  EXPECT_EQ(both.size(), 2u);
+  EXPECT_FALSE(views_of_sheet("<html></html>"));
+  EXPECT_FALSE(views_of_sheet(sheet(first) + "more"));
+}
+
 TEST(ContactSheet, MarksFarOutsideAnImageAreLeftOut) {
   const Thumbnail small =
       thumbnail(GrayImage(8, 8), {{1e300, 0, ""}, {-5, 2, ""}}, "a.png", "a reason");

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "kinecal/capture/boards/disc_centres.hpp"
-#include "kinecal/capture/boards/opencv_circles.hpp"
+#include "kinecal/capture/boards/opencv_corners.hpp"
 
 namespace kinecal {
 

@@ -138,7 +138,7 @@ std::vector<Chart> convergence_charts(const ReportData& data) {
   const bool any = std::any_of(data.steps.begin(), data.steps.end(),
                                [](const StepResult& step) { return !step.costs.empty(); });
   if (!any) return {};
-  Chart chart{"convergence", "convergence", "Convergence",
+  Chart chart{"convergence", "convergence", "Cost",
               "Half the sum of weighted squares after each iteration.", ""};
   chart.svg = detail::draw_convergence(chart, data.steps);
   return {chart};

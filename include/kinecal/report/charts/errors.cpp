@@ -60,7 +60,7 @@ void draw_errors_row(Drawing& drawing, const BlockErrors& errors, const Axis& x,
   const ReportedBlock& block = *errors.block;
   const std::string unit = people_unit(block.unit);
   const std::string medians =
-      fmt::format("{} → {}{}", figure(quantile(errors.before, 0.5)),
+      fmt::format("median {} → {}{}", figure(quantile(errors.before, 0.5)),
                   figure(quantile(errors.after, 0.5)), unit.empty() ? "" : " " + unit);
   const double room = kChartWidth - 20.0 - kFontSize * text_width(medians);
   drawing.name({2.0, top + 14.0}, block.name, room, "strong");

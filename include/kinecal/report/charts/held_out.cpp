@@ -9,6 +9,7 @@
 
 #include "kinecal/report/svg.hpp"
 #include "kinecal/report/svg_text.hpp"
+#include "kinecal/report/text.hpp"
 
 namespace kinecal {
 
@@ -65,7 +66,9 @@ struct ErrorBar {
       drawing.rectangle({kLeft, y + 1.0}, std::max(1.0, x.at(bar.value) - kLeft), kBar - 5.0,
                         bar.classes);
       drawing.text({std::max(kLeft + 1.0, x.at(bar.value)) + 6.0, y + 12.0},
-                   with_unit(bar.value / people_factor(unit), unit), "small figure");
+                   in_reading_unit(bar.value / people_factor(unit), unit) +
+                       (unit == "1" ? "" : " " + reading_unit(unit)),
+                   "small figure");
       y += kBar;
     }
     drawing.line({kLeft, y - kBar * double(error_bars(*block).size()) - 1.0}, {kLeft, y - 2.0},

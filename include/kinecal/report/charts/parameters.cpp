@@ -11,6 +11,7 @@
 #include "kinecal/report/svg.hpp"
 #include "kinecal/report/svg_legend.hpp"
 #include "kinecal/report/svg_text.hpp"
+#include "kinecal/report/text.hpp"
 
 namespace kinecal {
 
@@ -48,7 +49,7 @@ struct ForestRow {
   return row;
 }
 
-/// "−1.23 ± 0.05 mm".
+/// "−1.230 ± 0.050 mm": one standard deviation, with the digits of the table.
 [[nodiscard]] std::string forest_figure(const ForestRow& row) {
   if (!row.determined) return "not determined";
   const std::string unit = parameter_unit(row.parameter->unit).second;
@@ -58,11 +59,10 @@ struct ForestRow {
   if (!usual || !(std::abs(row.change) < 1e9)) {
     return figure(row.change) + behind + (at_bound ? " (bound)" : "");
   }
-  const double size = std::floor(std::log10(row.half));
-  const int digits = static_cast<int>(std::clamp(1.0 - size, 0.0, 6.0));
-  std::string value = fmt::format("{:.{}f}", row.change, digits);
+  const ReportedParameter& of = *row.parameter;
+  std::string value = for_people(of.value - of.initial, of.unit).first;
   if (value.starts_with('-')) value.replace(0, 1, "\u2212");
-  return fmt::format("{} ± {:.{}f}{}", value, row.half, digits, behind);
+  return value + " ± " + for_people(*of.sigma, of.unit).first + behind;
 }
 
 /// Symmetric about zero.  A few parameters far beyond all others end at its edge.
@@ -138,13 +138,12 @@ void draw_forest_row(Drawing& drawing, const ForestRow& row, const PlotArea& are
 }
 
 [[nodiscard]] Chart forest_chart(const std::vector<ForestRow>& rows, const std::string& unit,
-                                 const std::string& change) {
+                                 const std::string& caption) {
   const std::string shown = parameter_unit(unit).second;
   const std::string slug = shown == "°" ? "deg" : shown == "%" ? "percent" : slug_of(shown);
   Chart chart{"parameters", "parameters" + (slug.empty() ? "" : "-" + slug),
               "Parameters" + (shown.empty() ? "" : ", " + (shown == "°" ? "degrees" : shown)),
-              change + "; bars, ±: 95 % interval. Faint: not significant; arrows: beyond the axis.",
-              ""};
+              caption, ""};
   constexpr double kRow = 19.0, kGap = 7.0;
   double height = 30.0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -193,7 +192,11 @@ std::vector<Chart> parameter_charts(const ReportData& data, const std::string& c
       if (parameter.note == kInCamera) continue;
       if (parameter.unit == unit) rows.push_back(detail::forest_row(parameter));
     }
-    charts.push_back(detail::forest_chart(rows, unit, change));
+    charts.push_back(detail::forest_chart(
+        rows, unit,
+        !charts.empty() ? ""
+                        : change + "; ±: one standard deviation; bars: 95 % interval. Faint: not "
+                                   "significant; arrows: beyond the axis."));
   }
   return charts;
 }

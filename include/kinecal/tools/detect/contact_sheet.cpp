@@ -45,6 +45,7 @@ path.dropped, rect.dropped { stroke: #ff00ff; }
 path.first, rect.first { stroke: #ff8c00; stroke-width: 2; }
 </style></head><body><main>
 )";
+constexpr const char* kSheetEnd = "</main></body></html>\n";
 
 /// The coordinates of an SVG: there the first pixel ends at 1, in an image its centre is at 0.
 [[nodiscard]] ChartPoint point_of(const Mark& mark) {
@@ -182,15 +183,33 @@ Thumbnail thumbnail(const GrayImage& image, std::vector<Mark> marks, const std::
   return small;
 }
 
-std::vector<std::string> contact_sheets(const std::vector<Thumbnail>& thumbnails) {
+std::vector<std::string> contact_sheets(const std::vector<Thumbnail>& thumbnails,
+                                        const std::vector<std::string>& earlier) {
   if (thumbnails.empty()) throw std::invalid_argument("a contact sheet needs a view");
   std::vector<std::string> sheets;
-  for (std::size_t i = 0; i < thumbnails.size(); ++i) {
+  for (std::size_t i = 0; i < earlier.size() + thumbnails.size(); ++i) {
     if (i % kViewsOfSheet == 0) sheets.emplace_back(detail::kSheetHead);
-    sheets.back() += detail::html_view(thumbnails[i], i + 1);
+    sheets.back() +=
+        i < earlier.size() ? earlier[i] : detail::html_view(thumbnails[i - earlier.size()], i + 1);
   }
-  for (std::string& sheet : sheets) sheet += "</main></body></html>\n";
+  for (std::string& sheet : sheets) sheet += detail::kSheetEnd;
   return sheets;
+}
+
+std::optional<std::vector<std::string>> views_of_sheet(std::string_view page) {
+  constexpr std::string_view kEnd = "</figure>\n";
+  const std::string_view head = detail::kSheetHead, end = detail::kSheetEnd;
+  if (!page.starts_with(head) || !page.ends_with(end)) return std::nullopt;
+  page.remove_prefix(head.size());
+  page.remove_suffix(end.size());
+  std::vector<std::string> views;
+  while (!page.empty()) {
+    const std::size_t at = page.find(kEnd);
+    if (at == std::string_view::npos) return std::nullopt;
+    views.emplace_back(page.substr(0, at + kEnd.size()));
+    page.remove_prefix(at + kEnd.size());
+  }
+  return views;
 }
 
 std::string sheet_name(const std::string& first, std::size_t number) {

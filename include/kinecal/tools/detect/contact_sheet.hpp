@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinecal/capture/view.hpp"
@@ -35,8 +37,14 @@ inline constexpr std::size_t kViewsOfSheet = 24;
 /// dotted lines join neighbours in the order of their ids.  Below are the number of the view, its name and the RMS
 /// distance of corners and grid.  A view without features has a red frame and the reason below.  Marks far outside an
 /// image are left out.
+/// @param earlier  views_of_sheet() of an interrupted session: they come first, and numbers go on after them
 /// @throws std::invalid_argument  if there are no views, or an image is empty
-[[nodiscard]] std::vector<std::string> contact_sheets(const std::vector<Thumbnail>& thumbnails);
+[[nodiscard]] std::vector<std::string> contact_sheets(const std::vector<Thumbnail>& thumbnails,
+                                                      const std::vector<std::string>& earlier = {});
+
+/// The views of a page that contact_sheets() wrote, as HTML.
+/// @return  nullopt if it did not write this text
+[[nodiscard]] std::optional<std::vector<std::string>> views_of_sheet(std::string_view page);
 
 /// The name of a sheet's file: that of the first; "sheet-2.html" of the second of "sheet.html".  "sheet.png", as sheets
 /// were once written, is "sheet.html".
