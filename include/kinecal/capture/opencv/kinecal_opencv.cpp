@@ -20,15 +20,34 @@ cv::Mat opencv_image(GrayPixels image) {
   return {image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.data)};
 }
 
+/// An image of which no side is longer than so many pixels.
+struct ReducedImage {
+  double reduction;  ///< pixels of the image in one of these
+  cv::Mat pixels;
+
+  ReducedImage(GrayPixels image, double longest)
+      : reduction(std::max(1.0, std::max(image.width, image.height) / longest)),
+        pixels(opencv_image(image)) {
+    if (!(reduction > 1.0)) return;
+    cv::Mat smaller;
+    cv::resize(pixels, smaller, {}, 1.0 / reduction, 1.0 / reduction, cv::INTER_AREA);
+    pixels = smaller;
+  }
+
+  /// Where points of these pixels are in the image; the centre of the first pixel is at 0 in either size.
+  [[nodiscard]] std::vector<Eigen::Vector2d> in_image(const std::vector<cv::Point2f>& found) const {
+    std::vector<Eigen::Vector2d> points;
+    for (const cv::Point2f& p : found) {
+      points.emplace_back((p.x + 0.5) * reduction - 0.5, (p.y + 0.5) * reduction - 0.5);
+    }
+    return points;
+  }
+};
+
 std::vector<Eigen::Vector2d> find_chessboard(GrayPixels image, int columns, int rows,
                                              BoardSearch search, double longest) {
-  const double shrink = std::max(1.0, std::max(image.width, image.height) / longest);
-  cv::Mat searched = opencv_image(image);
-  if (shrink > 1.0) {
-    cv::Mat smaller;
-    cv::resize(searched, smaller, {}, 1.0 / shrink, 1.0 / shrink, cv::INTER_AREA);
-    searched = smaller;
-  }
+  const ReducedImage reduced(image, longest);
+  cv::Mat searched = reduced.pixels;
   if (search == BoardSearch::squares) {  // noise has outlines: thousands of them take minutes
     constexpr double kSmooth = 1.0;      // pixels
     cv::Mat smooth;
@@ -43,12 +62,7 @@ std::vector<Eigen::Vector2d> find_chessboard(GrayPixels image, int columns, int 
       search == BoardSearch::squares
           ? cv::findChessboardCorners(searched, size, found, usual)
           : cv::findChessboardCornersSB(searched, size, found, cv::CALIB_CB_NORMALIZE_IMAGE);
-  if (!there) return {};
-  std::vector<Eigen::Vector2d> corners;
-  for (const cv::Point2f& p : found) {  // the centre of the first pixel is at 0 in either size
-    corners.emplace_back((p.x + 0.5) * shrink - 0.5, (p.y + 0.5) * shrink - 0.5);
-  }
-  return corners;
+  return there ? reduced.in_image(found) : std::vector<Eigen::Vector2d>();
 }
 
 void refine_corners(GrayPixels image, int reach, std::vector<Eigen::Vector2d>& corners) {
@@ -80,23 +94,15 @@ cv::Ptr<cv::FeatureDetector> disc_detector(double most) {
 std::vector<Eigen::Vector2d> find_circles(GrayPixels image, int columns, int rows,
                                           bool asymmetric) {
   constexpr double kLongestSide = 1600.0;
-  const double shrink = std::max(1.0, std::max(image.width, image.height) / kLongestSide);
-  cv::Mat searched = opencv_image(image);
-  if (shrink > 1.0) {
-    cv::Mat smaller;
-    cv::resize(searched, smaller, {}, 1.0 / shrink, 1.0 / shrink, cv::INTER_AREA);
-    searched = smaller;
-  }
+  const ReducedImage reduced(image, kLongestSide);
+  const cv::Mat& searched = reduced.pixels;
   const auto discs = disc_detector(static_cast<double>(searched.total()) / (columns * rows));
   const int kind = asymmetric ? cv::CALIB_CB_ASYMMETRIC_GRID : cv::CALIB_CB_SYMMETRIC_GRID;
   std::vector<cv::Point2f> found;
   for (const int how : {kind, kind | cv::CALIB_CB_CLUSTERING}) {
-    if (!cv::findCirclesGrid(searched, {columns, rows}, found, how, discs)) continue;
-    std::vector<Eigen::Vector2d> centres;
-    for (const cv::Point2f& p : found) {
-      centres.emplace_back((p.x + 0.5) * shrink - 0.5, (p.y + 0.5) * shrink - 0.5);
+    if (cv::findCirclesGrid(searched, {columns, rows}, found, how, discs)) {
+      return reduced.in_image(found);
     }
-    return centres;
   }
   return {};
 }
