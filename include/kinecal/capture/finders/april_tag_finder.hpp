@@ -30,7 +30,7 @@ class AprilTagFinder;
 
 /// A target with tags.
 struct AprilTagSettings {
-  using FinderType = AprilTagFinder;
+  using FinderType = AprilTagFinder;  ///< finds it
 
   int columns = 0;                   ///< of the grid; 0: no grid, only `tags`
   int rows = 0;                      ///< of the grid

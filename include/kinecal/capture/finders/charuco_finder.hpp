@@ -18,7 +18,7 @@ class CharucoFinder;
 
 /// A ChArUco board, with OpenCV's names.
 struct CharucoSettings {
-  using FinderType = CharucoFinder;
+  using FinderType = CharucoFinder;  ///< finds it
 
   int squares_x = 5;                       ///< squares of a row
   int squares_y = 7;                       ///< squares of a column

@@ -19,7 +19,7 @@ class CheckerboardFinder;
 
 /// A checkerboard, with robot_calibration's names.
 struct CheckerboardSettings {
-  using FinderType = CheckerboardFinder;
+  using FinderType = CheckerboardFinder;  ///< finds it
 
   int points_x = 5;            ///< inner corners of a row; at least 3
   int points_y = 4;            ///< inner corners of a column; at least 3

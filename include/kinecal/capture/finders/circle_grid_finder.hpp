@@ -20,7 +20,7 @@ class CircleGridFinder;
 
 /// A grid of discs.
 struct CircleGridSettings {
-  using FinderType = CircleGridFinder;
+  using FinderType = CircleGridFinder;  ///< finds it
 
   int points_x = 4;    ///< discs of a row; at least 2
   int points_y = 11;   ///< rows; at least 2

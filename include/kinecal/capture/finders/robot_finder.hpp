@@ -22,9 +22,13 @@ struct RobotFinder {
   /// Points of the plane, then of the robot, in the optical frame; up to `plane.points_max` each.
   [[nodiscard]] Found find(const View& view) const;
 
-  /// As those of the plane.
+  /// As that of the plane.
   [[nodiscard]] static std::string fault(const View& view) { return PlaneFinder::fault(view); }
+
+  /// As that of the plane.
   [[nodiscard]] const std::string& region_frame() const { return plane.region_frame(); }
+
+  /// As that of the plane.
   void place_on(const CameraIn& camera_in) { plane.place_on(camera_in); }
 };
 static_assert(Finder<RobotFinder>);
