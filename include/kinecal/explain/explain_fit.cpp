@@ -267,22 +267,27 @@ struct FreeLength {
 [[nodiscard]] std::vector<double> sample_squares(const AnyProblem& empty,
                                                  const Eigen::VectorXd& values,
                                                  std::span<const Sample> samples) {
-  const std::unique_ptr<AnyProblem> problem = empty.without_samples();
   std::vector<double> squares(samples.size(), HUGE_VAL);
-  std::vector<int> usable;  // numbers of the problem's samples
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    try {
-      problem->add_sample(samples[i]);
-      usable.push_back(static_cast<int>(i));
-    } catch (const SampleError&) {
+  const auto set = [&](std::size_t first, std::size_t end) {
+    const std::unique_ptr<AnyProblem> problem = empty.without_samples();
+    std::vector<int> usable;  // numbers of the problem's samples
+    for (std::size_t i = first; i < end; ++i) {
+      try {
+        problem->add_sample(samples[i]);
+        usable.push_back(static_cast<int>(i));
+      } catch (const SampleError&) {
+      }
     }
-  }
-  const std::vector<double> misfits =
-      misfits_of(*problem, {values.data(), static_cast<std::size_t>(values.size())}, usable);
-  for (const int i : usable) {
-    const double misfit = misfits[static_cast<std::size_t>(i)];
-    squares[static_cast<std::size_t>(i)] = misfit * misfit;
-  }
+    const std::vector<double> misfits =
+        misfits_of(*problem, {values.data(), static_cast<std::size_t>(values.size())}, usable);
+    for (const int i : usable) {
+      const auto at = static_cast<std::size_t>(i);
+      if (at < misfits.size()) squares[at] = misfits[at] * misfits[at];
+    }
+    return std::all_of(misfits.begin(), misfits.end(), [](double m) { return std::isfinite(m); });
+  };
+  if (set(0, samples.size())) return squares;  // else a point of some samples is behind a camera
+  for (std::size_t i = 0; i < samples.size(); ++i) set(i, i + 1);
   return squares;
 }
 
