@@ -41,7 +41,7 @@ std::string change_line(const std::vector<FitChange>& changes) {
 
 int evaluate(const RecheckOptions& options) {
   const StoredResult result = read_result(options.result);
-  if (!options.report.empty()) check_report(options.report, options.samples, false);
+  if (!options.report.empty()) check_json(options.report, options.samples);
   const NewSamples fresh =
       read_new_samples(result, {options.samples, options.cameras, options.recorded});
   print(fresh.diagnostics);

@@ -60,6 +60,12 @@ void check_report(const std::string& output, const std::vector<std::string>& inp
   check_output(output, inputs, force || is_there);
 }
 
+void check_json(const std::string& output, const std::vector<std::string>& inputs) {
+  check_report(output, inputs, false);
+  if (!is_page(output)) return;
+  throw OutputError(output + ": is written as JSON; let the name end in .json");
+}
+
 void check_page(const std::string& output, const std::vector<std::string>& inputs, bool force) {
   check_output(output, inputs, force);
   if (is_page(output)) return;

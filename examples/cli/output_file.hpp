@@ -25,6 +25,9 @@ void write_output(const std::string& output, const std::string& content);
 /// The same for a report, which replaces one that is there already.
 void check_report(const std::string& output, const std::vector<std::string>& inputs, bool force);
 
+/// The same for a report that is JSON, not a page.
+void check_json(const std::string& output, const std::vector<std::string>& inputs);
+
 /// The same for a page, which is HTML.
 void check_page(const std::string& output, const std::vector<std::string>& inputs, bool force);
 

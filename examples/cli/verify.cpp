@@ -321,7 +321,7 @@ std::string json(const Check& check) {
 
 int verify(const RecheckOptions& options) {
   const StoredResult result = read_result(options.result);
-  if (!options.report.empty()) check_report(options.report, options.samples, false);
+  if (!options.report.empty()) check_json(options.report, options.samples);
   const NewSamples fresh =
       read_new_samples(result, {options.samples, options.cameras, options.recorded, options.level});
   print(fresh.diagnostics);

@@ -229,6 +229,16 @@ TEST_F(Recheck, KnowsOffsetsThatRos2ControlAdds) {
   EXPECT_THAT(found.out, HasSubstr("taken as recorded after the result was installed"));
 }
 
+TEST_F(Recheck, JsonIsNotWrittenIntoAPage) {
+  calibrate();
+  for (const char* command : {"verify", "evaluate"}) {
+    const Outcome result = with_new(command, "--report page.html");
+    EXPECT_NE(result.code, 0);
+    EXPECT_THAT(result.err, HasSubstr("page.html: is written as JSON; let the name end in .json"));
+    EXPECT_FALSE(std::filesystem::exists("page.html"));
+  }
+}
+
 TEST_F(Recheck, EvaluatesOtherSamplesBesideTheCalibration) {
   calibrate();
   slip(new_, "elbow", 0.004);
