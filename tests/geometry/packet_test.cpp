@@ -106,7 +106,7 @@ TEST(Packet, ComparesAsDoublesDo) {
 
 /// Sums of three products, perhaps fused in one and not in the other.
 TEST(Packet, CalculatesInMatricesAndPosesAsDoublesDo) {
-  constexpr double kRounding = 1e-15;
+  constexpr double kFused = 1e-15;
   Pose<double> constant{exp(Vector3<double>(0.1, -0.2, 0.3)), {1, 2, 3}};
   Pose<Packet> pose;
   Vector3<Packet> p;
@@ -129,10 +129,10 @@ TEST(Packet, CalculatesInMatricesAndPosesAsDoublesDo) {
     const Vector3<double> expected_back = poses[n].inverse() * points[n];
     const Vector3<double> expected_cross = points[n].cross(expected);
     for (int k = 0; k < 3; ++k) {
-      EXPECT_NEAR(lane(moved(k), i), expected(k), 4 * kRounding);
-      EXPECT_NEAR(lane(back(k), i), expected_back(k), 4 * kRounding);
-      EXPECT_NEAR(lane(cross(k), i), expected_cross(k), 4 * kRounding);
-      EXPECT_NEAR(lane(half(k), i), 0.75 * points[n](k), kRounding);
+      EXPECT_NEAR(lane(moved(k), i), expected(k), 4 * kFused);
+      EXPECT_NEAR(lane(back(k), i), expected_back(k), 4 * kFused);
+      EXPECT_NEAR(lane(cross(k), i), expected_cross(k), 4 * kFused);
+      EXPECT_NEAR(lane(half(k), i), 0.75 * points[n](k), kFused);
     }
   }
 }

@@ -45,14 +45,14 @@ TEST(Detect, FindersOfTheSameSensorsGiveASampleEach) {
 }
 
 TEST(Detect, LedsInRecordedImagesAreAnErrorThatSaysWhy) {
-  const CaptureFinder leds{"leds", "LedFinder", "", "", "", "", LedFinder{}, {"capture.yaml", 7}};
+  const CaptureFinder leds{"leds", "LedFinder", "", "", "", LedFinder{}, {"capture.yaml", 7}};
   const std::string error = test::error_of([&] { (void)view_finder(leds, leds.settings); });
   EXPECT_EQ(error.find("capture.yaml:7: finder 'leds': LEDs have to be switched"), 0u) << error;
 }
 
 TEST(Detect, ImpossibleSettingsAreAnErrorWithTheirPlace) {
   const CaptureFinder board{
-      "board", "", "", "", "", "", CheckerboardSettings{.points_x = 1}, {"capture.yaml", 3}};
+      "board", "", "", "", "", CheckerboardSettings{.points_x = 1}, {"capture.yaml", 3}};
   const std::string error = test::error_of([&] { (void)view_finder(board, board.settings); });
   EXPECT_EQ(error.find("capture.yaml:3: finder 'board': "), 0u) << error;
 }

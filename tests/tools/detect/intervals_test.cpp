@@ -51,7 +51,6 @@ class Intervals : public test::FolderTest {
             "/" + camera + "/image",
             "",
             "",
-            "",
             CheckerboardSettings{},
             {"c.yaml", 2}};
   }

@@ -64,7 +64,6 @@ class RecordedViewsTest : public test::FolderTest {
                                           "/cam/image",
                                           "/cam/camera_info",
                                           "",
-                                          "",
                                           CheckerboardSettings{},
                                           {"c.yaml", 2}}};
   Diagnostics diagnostics_;

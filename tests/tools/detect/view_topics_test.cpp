@@ -20,7 +20,7 @@ const RecordedTopic kInfo{"cam/camera_info", "sensor_msgs/CameraInfo", ""};
 const RecordedTopic kOther{"side/image", "sensor_msgs/Image", "mono8"};
 
 CaptureFinder finder(const std::string& type, const std::string& topic) {
-  return {"board", type, topic, topic + "_info", "", "", CheckerboardSettings{}, {"c.yaml", 3}};
+  return {"board", type, topic, topic + "_info", "", CheckerboardSettings{}, {"c.yaml", 3}};
 }
 const std::string kPixels = "CheckerboardFinder2d", kPoints = "CheckerboardFinder";
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/capture/finders/board_flips.hpp"
 
-#include <fmt/core.h>
-
 #include <array>
 #include <optional>
 #include <stdexcept>
@@ -66,6 +64,11 @@ void turn_board(Observation& camera, const AlikeBoard& board, int turns) {
   }
 }
 
+/// "8x6"
+std::string times_text(int columns, int rows) {
+  return std::to_string(columns) + "x" + std::to_string(rows);
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -74,7 +77,7 @@ AlikeBoard alike_board(const CheckerboardSettings& board) {
           board.points_y,
           turns_alike(board.points_x, board.points_y),
           board.target,
-          fmt::format("a board of {}x{} corners", board.points_x, board.points_y),
+          "a board of " + detail::times_text(board.points_x, board.points_y) + " corners",
           "a board of which points_x + points_y is odd"};
 }
 
@@ -83,7 +86,7 @@ AlikeBoard alike_board(const CircleGridSettings& grid) {
           grid.points_y,
           turns_alike(grid),
           grid.target,
-          fmt::format("a grid of {}x{} discs", grid.points_x, grid.points_y),
+          "a grid of " + detail::times_text(grid.points_x, grid.points_y) + " discs",
           "an asymmetric grid of which points_y is odd"};
 }
 
