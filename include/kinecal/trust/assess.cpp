@@ -132,6 +132,7 @@ void set_uncertainty(const AnyProblem& problem, const FreeSet& free, ParameterVa
 void keep_what_foretells(AnyEvaluator& evaluator, ParameterValues values, const LinearFit& fit,
                          std::span<const Sample> samples, const PoseGroups& poses,
                          const AssessOptions& options, Assessment& found) {
+  if (found.held_out.empty()) return;
   const auto is_bad = [&](int sample) {
     return found.captures[static_cast<std::size_t>(sample)].bad;
   };
@@ -144,7 +145,7 @@ void keep_what_foretells(AnyEvaluator& evaluator, ParameterValues values, const 
     fold[static_cast<std::size_t>(block.sample)] = -1;
     terms.insert(block.term);
   }
-  if (terms.empty() || found.held_out.empty()) return;
+  if (terms.empty()) return;
   try {
     const std::vector<HeldOutError> errors = held_out_errors(evaluator, values, without, fold);
     const bool better = std::any_of(terms.begin(), terms.end(), [&](int term) {
