@@ -50,22 +50,24 @@ TEST(Captures, NamesTheTenThatAreRuinedAndNoOther) {
   }
 }
 
-/// Joints that do not repeat, and few poses: whichever is left out, the others fit more closely and foretell no better.
+/// Joints that do not repeat, and few poses: the others fit more closely without some of them, but may foretell no better.
 TEST(Captures, AreDoubtedOnlyIfTheOthersForetellBetterWithoutThem) {
-  constexpr double kRepeats = 4e-3;  // radians
+  constexpr double kRepeats = 0.01;  // radians
   std::size_t by_fit = 0, doubted = 0;
-  for (unsigned seed = 0; seed < 40; ++seed) {
-    test::NoisyScene scene(8, seed);
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    test::NoisyScene scene(seed % 2 == 0 ? 8 : 5, seed);
     std::mt19937 random(seed + 100);
     std::normal_distribution<double> normal(0.0, kRepeats);
     for (Sample& sample : scene.samples) {
       for (double& position : sample.joint_positions) position += normal(random);
     }
-    doubted += bad_ones(scene.solve_and_assess()).size();
-    by_fit += bad_ones(scene.assessment({.folds = 0})).size();
+    const std::vector<int> bad = bad_ones(scene.solve_and_assess());
+    const std::vector<int> of_fit = bad_ones(scene.assessment({.folds = 0}));
+    EXPECT_TRUE(bad.empty() || bad == of_fit);
+    doubted += bad.size(), by_fit += of_fit.size();
   }
-  EXPECT_GT(by_fit, 0u);
-  EXPECT_LT(2 * doubted, by_fit);
+  EXPECT_GT(doubted, 0u);
+  EXPECT_LT(doubted, by_fit);
 }
 
 /// 0.09 px at a sigma of 0.5 px, though nine times the noise that the other samples have.
