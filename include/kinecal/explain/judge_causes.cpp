@@ -18,13 +18,16 @@ namespace detail {
 namespace {
 
 /// Values that cannot be, whatever the fit.
-/// @param is_explained  a cause of the bad fit is known: cameras are wrong for the same one
+/// @param is_explained  a cause of the bad fit is known: then cameras that began right are wrong for the same one
 void judge_impossible(const CalibrationInput& input, bool is_explained, JudgedResult& judged) {
   const ParameterTable& table = judged.result.table;
-  const std::string camera = impossible_camera(input.calibration, table, input.samples);
-  if (!camera.empty() && is_explained) judged.judgement.add(Grade::do_not_use, camera);
-  if (!camera.empty() && !is_explained) {
-    judged.judgement.add_causes(Grade::do_not_use, {camera});
+  const auto impossible = [&](const ParameterTable& values) {
+    return impossible_camera(input.calibration, values, input.samples);
+  };
+  if (const std::string camera = impossible(table); !camera.empty()) {
+    is_explained&& impossible(input.calibration.table).empty()
+        ? judged.judgement.add(Grade::do_not_use, camera)
+        : judged.judgement.add_causes(Grade::do_not_use, {camera});
   }
   Diagnostics offsets;
   check_offsets(input, table, offsets);
