@@ -39,6 +39,7 @@
 #include "kinecal/capture/finders/turn_votes.hpp"
 #include "kinecal/capture/finders/view_checks.hpp"
 #include "kinecal/capture/image.hpp"
+#include "kinecal/capture/opencv/kinecal_opencv.hpp"
 #include "kinecal/capture/plugin_file.hpp"
 #include "kinecal/capture/robot_interface.hpp"
 #include "kinecal/capture/session/capture_pose.hpp"

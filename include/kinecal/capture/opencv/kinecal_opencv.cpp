@@ -1,13 +1,13 @@
-// OpenCV's searches for boards and markers, loaded by kinecal/capture/boards/opencv_module.hpp.
+// Definitions of kinecal_opencv.hpp.
 // SPDX-License-Identifier: Apache-2.0
+#include "kinecal/capture/opencv/kinecal_opencv.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/version.hpp>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
-
-#include "kinecal/capture/boards/opencv_module.hpp"
 #ifdef KINECAL_HAVE_ARUCO
 #include <opencv2/aruco.hpp>
 #endif
