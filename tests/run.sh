@@ -5,7 +5,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 
-echo "Installs what is missing, compiles and tests kinecal: about 20 minutes on two cores."
+echo "Installs what is missing, compiles and tests kinecal: 20 to 40 minutes on two cores."
 cmake/install_packages.sh test
 
 for preset in "${@:-test}"; do
