@@ -1,14 +1,9 @@
-# The plug-in of OpenCV's searches, loaded when they are needed: kinecal/capture/boards/opencv_module.hpp.
+# The plug-in of OpenCV's searches: kinecal/capture/boards/opencv_module.hpp.
 find_package(OpenCV 4 QUIET COMPONENTS core imgproc features2d calib3d OPTIONAL_COMPONENTS aruco)
 if(TARGET opencv_core AND TARGET opencv_imgproc AND TARGET opencv_features2d AND TARGET opencv_calib3d)
-  add_library(kinecal_opencv MODULE ${PROJECT_SOURCE_DIR}/include/kinecal/capture/opencv/kinecal_opencv.cpp)
-  set_target_properties(kinecal_opencv PROPERTIES
-    PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/kinecal INSTALL_RPATH_USE_LINK_PATH ON)
-  target_compile_features(kinecal_opencv PRIVATE cxx_std_20)
+  kinecal_add_plugin(kinecal_opencv ${PROJECT_SOURCE_DIR}/include/kinecal/capture/opencv/kinecal_opencv.cpp opencv_plugin
+    opencv_calib3d opencv_features2d opencv_imgproc opencv_core Eigen3::Eigen kinecal_build_options)
   target_include_directories(kinecal_opencv PRIVATE ${PROJECT_SOURCE_DIR}/include)
-  target_compile_definitions(kinecal_opencv PRIVATE KINECAL_VERSION="${PROJECT_VERSION}")
-  target_link_libraries(kinecal_opencv PRIVATE opencv_calib3d opencv_features2d opencv_imgproc
-    opencv_core Eigen3::Eigen kinecal_build_options)
   if(TARGET opencv_aruco)
     target_link_libraries(kinecal_opencv PRIVATE opencv_aruco)
     target_compile_definitions(kinecal_opencv PRIVATE KINECAL_HAVE_ARUCO)
@@ -16,10 +11,6 @@ if(TARGET opencv_core AND TARGET opencv_imgproc AND TARGET opencv_features2d AND
     message(STATUS "kinecal: without libopencv-contrib-dev, no ChArUco boards")
   endif()
   add_dependencies(kinecal_capture kinecal_opencv)
-  if(KINECAL_INSTALL)
-    install(TARGETS kinecal_opencv LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/kinecal
-            COMPONENT opencv_plugin)
-  endif()
 else()
   message(STATUS "kinecal: without libopencv-dev, no checkerboards, grids of discs and ChArUco boards")
 endif()

@@ -232,6 +232,23 @@ if(BUILD_SHARED_LIBS)
   endif()
 endif()
 
+# kinecal_add_plugin(<name> <source> <component> <target>...)
+#
+# A part with large dependencies, loaded when it is needed: kinecal/capture/plugin_file.hpp.
+# @param component  of the installation
+# @param ARGN       what it links
+function(kinecal_add_plugin name source component)
+  add_library(${name} MODULE ${source})
+  set_target_properties(${name} PROPERTIES
+    PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/kinecal INSTALL_RPATH_USE_LINK_PATH ON)
+  target_compile_features(${name} PRIVATE cxx_std_20)
+  target_compile_definitions(${name} PRIVATE KINECAL_VERSION="${PROJECT_VERSION}")
+  target_link_libraries(${name} PRIVATE ${ARGN})
+  if(KINECAL_INSTALL)
+    install(TARGETS ${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/kinecal COMPONENT ${component})
+  endif()
+endfunction()
+
 # kinecal_link_optimized_first(<program> <library>...)
 #
 # Of an inline function the linker takes the first copy that it sees.  In a program that is not optimized it shall be

@@ -301,10 +301,8 @@ std::string page_of(const Assembled& a, const Assembled& b, const Comparison& al
       detail::html_text(title),
       fmt::format("by more than {} standard deviations of the difference", kMoved),
       detail::html_paragraphs(pose_text(a, all)));
-  body += "<div class=\"pair\">";
-  for (const Chart& chart : parameter_charts(data, "How much more the second result has"))
-    body += detail::html_figure(chart);
-  body += "</div>\n" + detail::html_table(rows, "ttnnnnn") + "</section>\n";
+  body += detail::html_figures(parameter_charts(data, "How much more the second result has")) +
+          detail::html_table(rows, "ttnnnnn") + "</section>\n";
   if (!all.others.empty()) {
     std::vector<std::vector<std::string>> others = {{"parameter", "why"}};
     for (const NotCompared& of : all.others) others.push_back({of.name, of.why});

@@ -70,6 +70,19 @@ std::string markup_of(std::string page) {
   return page;
 }
 
+TEST(Html, ACaptionOfSeveralChartsStandsBelowTheFirst) {
+  const auto chart = [](const char* title, const char* caption) {
+    return Chart{"errors", title, title, caption, "<svg/>"};
+  };
+  EXPECT_EQ(detail::html_figures({chart("a", "of both"), chart("b", "of both"), chart("c", "own")}),
+            "<div class=\"pair\">"
+            "<figure><h3>a</h3><svg/><figcaption>of both</figcaption></figure>\n"
+            "<figure><h3>b</h3><svg/></figure>\n"
+            "<figure><h3>c</h3><svg/><figcaption>own</figcaption></figure>\n"
+            "</div>\n");
+  EXPECT_EQ(detail::html_figures({}), "");
+}
+
 TEST(Html, IsWellFormedWhateverNamesContain) {
   for (const std::string& name :
        {std::string("<script>alert(1)</script>"), std::string("\"'><img src=x onerror=alert(1)>"),

@@ -80,6 +80,16 @@ std::string html_figure(const Chart& chart) {
                      caption);
 }
 
+std::string html_figures(std::vector<Chart> charts) {
+  std::string drawn;
+  std::set<std::string> said;
+  for (Chart& chart : charts) {
+    if (!said.insert(chart.caption).second) chart.caption.clear();
+    drawn += html_figure(chart);
+  }
+  return drawn.empty() ? "" : "<div class=\"pair\">" + drawn + "</div>\n";
+}
+
 /// Wraps a table so that it scrolls separately, also with the keyboard.
 [[nodiscard]] inline std::string scroll_region(const std::string& name) {
   return fmt::format(R"(<div class="scroll" tabindex="0" role="region" aria-label="{}">)",
@@ -119,16 +129,11 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows,
 [[nodiscard]] inline std::string section(std::string_view id, std::string_view title,
                                          const std::string& figures,
                                          const std::vector<Chart>& charts) {
-  std::string drawn;
-  std::set<std::string> said;  // a caption of several charts stands below the first
-  for (Chart chart : charts) {
-    if (section_of(chart) != id) continue;
-    if (!said.insert(chart.caption).second) chart.caption.clear();
-    drawn += html_figure(chart);
-  }
-  if (figures.empty() && drawn.empty()) return "";
-  const std::string html =
-      figures + (drawn.empty() ? "" : "<div class=\"pair\">" + drawn + "</div>\n");
+  std::vector<Chart> own;
+  std::copy_if(charts.begin(), charts.end(), std::back_inserter(own),
+               [&](const Chart& chart) { return section_of(chart) == id; });
+  const std::string html = figures + html_figures(std::move(own));
+  if (html.empty()) return "";
   return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, title, html);
 }
 
@@ -260,10 +265,10 @@ namespace {
                         : for_people(parameter.initial, parameter.unit).first,
                     unit, parameter.note});
   }
-  const bool turns = std::any_of(data.parameters.begin(), data.parameters.end(),
-                                 [](const ReportedParameter& parameter) {
-                                   return turns_frame(parameter.name, parameter.owner);
-                                 });
+  const bool turns = std::any_of(
+      data.parameters.begin(), data.parameters.end(), [](const ReportedParameter& parameter) {
+        return parameter.unit == "rad" && is_frame_parameter(parameter.name, parameter.owner);
+      });
   return unobservable_text(data) + "<p>&plusmn; is one standard deviation" + (turns ? "; " : "") +
          (turns ? kAxesOfFrames : "") + ".</p>\n" + html_table(rows, "tnnntt");
 }

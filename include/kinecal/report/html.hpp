@@ -46,6 +46,9 @@ namespace detail {
 /// A chart with its caption.
 [[nodiscard]] std::string html_figure(const Chart& chart);
 
+/// Charts beside each other; a caption of several stands below the first of them.  Empty if there are none.
+[[nodiscard]] std::string html_figures(std::vector<Chart> charts);
+
 /// A table; cells are plain text, the first row is the header.
 /// @param columns  the kind of each column: 't' short text, 'l' long text, 'n' a number
 [[nodiscard]] std::string html_table(const std::vector<std::vector<std::string>>& rows,

@@ -92,7 +92,8 @@ namespace kinecal::detail {
   const ParameterTable& table = findings.result.table;
   const auto is_turn = [&](int i) {
     const std::string owner = table[i].name.substr(0, table[i].name.rfind('_'));
-    return turns_frame(table[i].name, owner) && table.find(owner + "_x") >= 0;
+    return table[i].unit == "rad" && is_frame_parameter(table[i].name, owner) &&
+           table.find(parameter_name(owner, "x")) >= 0;
   };
   const std::vector<int>& rows = findings.result.calibrated;
   const bool turns = std::any_of(rows.begin(), rows.end(), is_turn);

@@ -75,10 +75,6 @@ std::pair<std::string, std::string> for_people(double value, const std::string& 
   return {fmt::format("{:.3g}", value), unit};
 }
 
-bool turns_frame(const std::string& name, const std::string& owner) {
-  return name == owner + "_a" || name == owner + "_b" || name == owner + "_c";
-}
-
 }  // namespace detail
 
 std::string step_lines(const CalibrationResult& result) {

@@ -66,9 +66,6 @@ namespace detail {
 inline constexpr const char* kAxesOfFrames =
     "_x _y _z shift a frame, _a _b _c turn it about its x, y, z (rotation vector)";
 
-/// True for a parameter that turns a frame: "head_joint_a" of "head_joint".
-[[nodiscard]] bool turns_frame(const std::string& name, const std::string& owner);
-
 }  // namespace detail
 
 }  // namespace kinecal

@@ -132,10 +132,12 @@ void set_uncertainty(const AnyProblem& problem, const FreeSet& free, ParameterVa
 void keep_what_foretells(AnyEvaluator& evaluator, ParameterValues values, const LinearFit& fit,
                          std::span<const Sample> samples, const PoseGroups& poses,
                          const AssessOptions& options, Assessment& found) {
-  if (found.held_out.empty()) return;
   const auto is_bad = [&](int sample) {
     return found.captures[static_cast<std::size_t>(sample)].bad;
   };
+  const bool any_bad = std::any_of(found.captures.begin(), found.captures.end(),
+                                   [](const CaptureError& error) { return error.bad; });
+  if (!any_bad || found.held_out.empty()) return;
   LinearFit without = fit;
   std::vector<int> fold = folds_of(samples, poses, std::min(options.folds, poses.count));
   std::set<int> terms;  // in which a bad sample is measured

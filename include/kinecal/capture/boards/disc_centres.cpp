@@ -93,7 +93,9 @@ struct DiscPixel {
 
 /// The plane's image in a fit.
 [[nodiscard]] PlaneImage image_of(const CornerFit& fit) {
-  return [fit](const Eigen::Vector2d& place) { return fit.lens.bent(mapped(fit.h, place)); };
+  return [bent = fit.lens.bent, h = fit.h](const Eigen::Vector2d& place) {
+    return bent(mapped(h, place));
+  };
 }
 
 /// How an image stretches at a place: d pixel / d plane (2 x 2).

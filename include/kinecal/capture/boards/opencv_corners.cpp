@@ -37,9 +37,7 @@ std::string aruco_fault() {
   const OpencvModule* const module = opencv_module();
   if (module == nullptr || module->find_markers != nullptr) return opencv_fault("markers of ArUco");
   return "finding markers of ArUco needs OpenCV with its module aruco: install "
-         "libopencv-contrib-dev "
-         "and "
-         "build kinecal-opencv again";
+         "libopencv-contrib-dev and build kinecal-opencv again";
 }
 
 std::vector<Eigen::Vector2d> find_chessboard(const GrayImage& image, int columns, int rows,

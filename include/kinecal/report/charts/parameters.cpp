@@ -138,12 +138,15 @@ void draw_forest_row(Drawing& drawing, const ForestRow& row, const PlotArea& are
 }
 
 [[nodiscard]] Chart forest_chart(const std::vector<ForestRow>& rows, const std::string& unit,
-                                 const std::string& caption) {
+                                 const std::string& change) {
   const std::string shown = parameter_unit(unit).second;
   const std::string slug = shown == "°" ? "deg" : shown == "%" ? "percent" : slug_of(shown);
   Chart chart{"parameters", "parameters" + (slug.empty() ? "" : "-" + slug),
               "Parameters" + (shown.empty() ? "" : ", " + (shown == "°" ? "degrees" : shown)),
-              caption, ""};
+              change +
+                  "; ±: one standard deviation; bars: 95 % interval. Faint: not significant; "
+                  "arrows: beyond the axis.",
+              ""};
   constexpr double kRow = 19.0, kGap = 7.0;
   double height = 30.0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -192,11 +195,7 @@ std::vector<Chart> parameter_charts(const ReportData& data, const std::string& c
       if (parameter.note == kInCamera) continue;
       if (parameter.unit == unit) rows.push_back(detail::forest_row(parameter));
     }
-    charts.push_back(detail::forest_chart(
-        rows, unit,
-        !charts.empty() ? ""
-                        : change + "; ±: one standard deviation; bars: 95 % interval. Faint: not "
-                                   "significant; arrows: beyond the axis."));
+    charts.push_back(detail::forest_chart(rows, unit, change));
   }
   return charts;
 }
