@@ -198,6 +198,7 @@ kinecal_add_library(solve UNIT 8
   LINK kinecal_core Ceres::ceres
   PRIVATE_LINK Boost::headers)
 kinecal_add_library(io UNIT 24
+  FOLDERS surface  # searched for every point of a cloud
   WARM files study config explain  # large recordings are read, photographs rendered, suspects calibrated
   COLD robots report tools procedure
   LINK kinecal_capture kinecal_solve nlohmann_json::nlohmann_json

@@ -27,6 +27,7 @@ struct InputOptions {
   std::vector<std::string> cameras = {};  ///< NAME=FILE, for samples without camera_info
   std::vector<std::string> hold = {};     ///< parameters that are not calibrated
   std::vector<int> exclude = {};          ///< samples to leave out, from 1
+  std::vector<std::string> mesh_paths = {};  ///< where the URDF's packages may be
   Recorded recorded = Recorded::after;    ///< the samples, and <calibration rising>
   bool is_part = false;                   ///< there are more samples: these may be few
   /// Unless it is an error, a configuration may be missing, and what is free is searched for: always if it is allowed,
@@ -58,7 +59,6 @@ struct CalibrateOptions : ResultOptions {
       reports;  ///< files: a page if it ends in .html, else JSON; whatever the verdict
   ShellCommand command = {};            ///< as the user typed it, for the report
   std::string scene;                    ///< MCAP for viewers; whatever the verdict
-  std::vector<std::string> mesh_paths;  ///< where the URDF's packages may be
   bool keep_outliers = false;           ///< use samples that do not fit the others
   bool dry_run = false;
   int folds = 5;   ///< for held-out errors; 0: leave-one-out
@@ -124,7 +124,6 @@ struct IdentifyOptions : InputOptions {
   bool force = false;                      ///< replace it
   std::vector<std::string> reports;        ///< files: a page if it ends in .html, else JSON
   ShellCommand command = {};               ///< as the user typed it, for the report
-  std::vector<std::string> mesh_paths;     ///< where the URDF's packages may be
 };
 
 /// Finds out which parameters of a robot are wrong, and writes a configuration that frees them.

@@ -27,7 +27,6 @@ CalibrateOptions for_calibration(const IdentifyOptions& options) {
   all.nothing_free = NothingFree::is_allowed;  // it always searches
   all.reports = options.reports;
   all.command = options.command;
-  all.mesh_paths = options.mesh_paths;
   return all;
 }
 

@@ -56,6 +56,7 @@ CalibrationOptions calibration_options(const InputOptions& options) {
   CalibrationOptions calibrating;
   calibrating.exclude = options.exclude;
   calibrating.hold = options.hold;
+  calibrating.mesh_paths = options.mesh_paths;
   calibrating.search = options.nothing_free == NothingFree::is_error     ? Search::never
                        : options.nothing_free == NothingFree::is_allowed ? Search::always
                                                                          : Search::if_open;

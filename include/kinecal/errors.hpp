@@ -11,6 +11,7 @@
 #include "kinecal/errors/plane_to_plane.hpp"
 #include "kinecal/errors/point_distance.hpp"
 #include "kinecal/errors/point_to_line.hpp"
+#include "kinecal/errors/point_to_mesh.hpp"
 #include "kinecal/errors/point_to_pixel.hpp"
 #include "kinecal/errors/point_to_plane.hpp"
 #include "kinecal/errors/point_to_point.hpp"

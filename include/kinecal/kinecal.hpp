@@ -12,5 +12,6 @@
 #include "kinecal/robots.hpp"
 #include "kinecal/solve.hpp"
 #include "kinecal/study.hpp"
+#include "kinecal/surface.hpp"
 #include "kinecal/tools.hpp"
 #include "kinecal/trust.hpp"

@@ -10,3 +10,4 @@
 #include "kinecal/procedure/judge_read_back.hpp"
 #include "kinecal/procedure/session_end.hpp"
 #include "kinecal/procedure/session_follower.hpp"
+#include "kinecal/procedure/surface_rounds.hpp"

@@ -705,11 +705,36 @@ TEST(ReadConfig, BlockNeedsItsTypeItsModelsAndItsParameter) {
                           "itself"));
 }
 
-TEST(ReadConfig, MeshBlocksAreRefusedByName) {
-  EXPECT_THAT(errors(with_block("type: chain3d_to_mesh, model: arm, link_name: base")),
-              ElementsAre("calibrate.yaml:10: error block 'block': type 'chain3d_to_mesh' is not "
-                          "supported in this version; distances of points to a plane are: use "
-                          "chain3d_to_plane"));
+TEST(ReadConfig, BlocksCompareACameraWithTheSurfaceOfLinks) {
+  const auto block_with = [](const std::string& keys) {
+    const StepConfig step = read(with_block("type: chain3d_to_mesh, " + keys)).step();
+    const BlockConfig& block = step.error_blocks[0];
+    EXPECT_THAT(block.models, ElementsAre("camera", "camera_surface"));
+    EXPECT_TRUE(step.models.back().is_surface);
+    EXPECT_EQ(step.models.back().name, "camera_surface");
+    EXPECT_EQ(step.models.back().links, block.surface->links);
+    return block;
+  };
+  EXPECT_THAT(block_with("model: camera, link_name: base").surface->links, ElementsAre("base"));
+  EXPECT_THAT(block_with("model: camera, links: [a, b]").surface->links, ElementsAre("a", "b"));
+  EXPECT_THAT(block_with("camera: camera, link_names: [a, b]").surface->links,
+              ElementsAre("a", "b"));
+  EXPECT_THAT(block_with("model: camera").surface->links, IsEmpty()) << "all that have a mesh";
+  const BlockConfig block = block_with(
+      "model: camera, geometry: collision, points: 100, loss: {type: cauchy, scale: 0.005}");
+  EXPECT_EQ(block.surface->geometry, "collision");
+  EXPECT_EQ(block.surface->points, 100);
+  EXPECT_EQ(block.loss.scale, 0.005);
+}
+
+TEST(ReadConfig, WrongKeysOfASurfaceAreErrors) {
+  EXPECT_THAT(errors(with_block("type: chain3d_to_mesh, model: camera, links: [a], link_name: b")),
+              ElementsAre("calibrate.yaml:10: error block 'block': 'link_name' and 'links' both name "
+                          "the links of the surface"));
+  EXPECT_THAT(errors(with_block("type: chain3d_to_mesh, model: camera, links: []")),
+              ElementsAre("calibrate.yaml:10: error block 'block': links has no link"));
+  EXPECT_THAT(errors(with_block("type: chain3d_to_mesh, model: camera, geometry: inertial")),
+              ElementsAre(HasSubstr("geometry")));
 }
 
 TEST(ReadConfig, AliasesOfOldVersionsAreRead) {

@@ -39,6 +39,17 @@ struct ModelConfig {
   std::string lens = {};
   /// Its type, where a program brings its own; nullptr: the one that the registry has by this name.
   std::shared_ptr<const SensorEntry> own = nullptr;
+  /// Further links in which its features may be given: those of the surface of the robot.
+  std::vector<std::string> links = {};
+  /// It is no sensor of the samples but the surface of the robot where another model observes it.
+  bool is_surface = false;
+
+  /// Where its features may be: the link it is fixed to, and further links.
+  [[nodiscard]] std::vector<std::string> frames() const {
+    std::vector<std::string> all = {frame};
+    all.insert(all.end(), links.begin(), links.end());
+    return all;
+  }
 };
 
 /// `free_params:`  a joint offset or a camera parameter.
@@ -85,6 +96,13 @@ struct LossConfig {
   double scale = 1.0;         ///< units of the block's residual after division by sigma
 };
 
+/// The surface of the robot with which chain3d_to_mesh compares points.
+struct SurfaceConfig {
+  std::vector<std::string> links = {};  ///< `link_name`, `links`; empty: all that have a mesh
+  std::string geometry = {};            ///< visual or collision; empty: visual, if it has meshes
+  int points = 5000;  ///< of a sample, at most; drawn evenly from all sides of all links
+};
+
 /// `error_blocks:`  a comparison, or a prior.
 struct BlockConfig {
   std::string name;                 ///< for reports and messages
@@ -99,6 +117,7 @@ struct BlockConfig {
   std::optional<double> sigma =
       {};                ///< standard deviation, units of the residual; empty: not given
   LossConfig loss;       ///< of each feature
+  std::optional<SurfaceConfig> surface = {};  ///< of chain3d_to_mesh
   SourceLocation place;  ///< where the file defines it
   /// Its type, where a program brings its own; nullptr: the one that the registry has by this name.
   std::shared_ptr<const BlockEntry> own = nullptr;

@@ -48,6 +48,7 @@ using Comments = std::map<std::string, std::string>;
 [[nodiscard]] std::string models_text(const StepConfig& step) {
   std::string text = "\nmodels:\n";
   for (const ModelConfig& model : step.models) {
+    if (model.is_surface) continue;
     text += fmt::format(" - name: {}\n   type: {}\n   frame: {}\n", name_to_yaml(model.name),
                         name_to_yaml(model.type), name_to_yaml(model.frame));
     if (model.param_name != model.name) {
@@ -136,6 +137,18 @@ using Comments = std::map<std::string, std::string>;
          (bounds.empty() ? "" : "\nbounds:\n" + bounds);
 }
 
+/// @param add  takes a key and its value
+template <class Add>
+void add_surface(const SurfaceConfig& surface, const Add& add) {
+  std::string links;
+  for (const std::string& link : surface.links) {
+    links += (links.empty() ? "" : ", ") + name_to_yaml(link);
+  }
+  if (!links.empty()) add("links", "[" + links + "]");
+  if (!surface.geometry.empty()) add("geometry", surface.geometry);
+  if (surface.points != SurfaceConfig{}.points) add("points", std::to_string(surface.points));
+}
+
 [[nodiscard]] std::string block_text(const BlockConfig& block) {
   std::string text =
       fmt::format(" - name: {}\n   type: {}\n", name_to_yaml(block.name), name_to_yaml(block.type));
@@ -145,7 +158,8 @@ using Comments = std::map<std::string, std::string>;
   const BlockEntry* entry = entry_of(block);
   if (entry != nullptr) {
     for (std::size_t i = 0; i < std::min(entry->sensors.size(), block.models.size()); ++i) {
-      add(entry->sensors[i].keys.front(), name_to_yaml(block.models[i]));
+      const std::vector<std::string>& keys = entry->sensors[i].keys;
+      if (!keys.empty()) add(keys.front(), name_to_yaml(block.models[i]));
     }
     for (const auto& [key, usual] : entry->numbers) {
       const auto number = block.numbers.find(key);
@@ -155,6 +169,7 @@ using Comments = std::map<std::string, std::string>;
   }
   if (!block.param.empty()) add("param", name_to_yaml(block.param));
   if (!block.ground.empty()) add("ground", name_to_yaml(block.ground));
+  if (block.surface) add_surface(*block.surface, add);
   if (block.exclusive) add("samples", *block.exclusive ? "exclusive" : "all");
   if (block.sigma) add("sigma", number_to_yaml(*block.sigma));
   if (block.loss.type != "none") {

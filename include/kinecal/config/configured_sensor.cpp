@@ -39,7 +39,7 @@ SensorOptions options_of(const ModelConfig& model) {
 }
 
 Mount mount_from(const ModelConfig& model) {
-  return {model.name, model.frame, model.param_name};
+  return {model.name, model.frame, model.param_name, model.links};
 }
 
 std::string lag_name(const ModelConfig& model) {

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -107,11 +108,63 @@ void read_block_weighting(ConfigMap& map, BlockConfig& block) {
   if (const BlockEntry* entry = registry().block(*type)) return entry;
   std::vector<std::string> types;
   for (const BlockEntry& entry : registry().blocks()) types.push_back(entry.type);
-  map.error(place, *type == "chain3d_to_mesh"
-                       ? "type 'chain3d_to_mesh' is not supported in this version; distances of "
-                         "points to a plane are: use chain3d_to_plane"
-                       : "type '" + *type + "' is not an error block" + did_you_mean(*type, types));
+  map.error(place, "type '" + *type + "' is not an error block" + did_you_mean(*type, types));
   return nullptr;
+}
+
+/// The surface of chain3d_to_mesh: `link_name`, `links` or `link_names`; `geometry`, `points`.
+[[nodiscard]] SurfaceConfig read_surface_of(ConfigMap& map, const BlockConfig& block) {
+  SurfaceConfig surface;
+  const char* given = nullptr;
+  for (const char* key : {"link_name", "links", "link_names"}) {
+    const ConfigEntry* entry = map.find(key);
+    if (entry == nullptr) continue;
+    if (given != nullptr) {
+      map.error(entry->place, fmt::format("'{}' and '{}' both name the links of the surface", given,
+                                          key));
+    }
+    given = key;
+    if (entry->value.is_list()) {
+      for (const ConfigEntry& element : map.list(key)) {
+        if (const auto name = config_text(element.value)) {
+          surface.links.push_back(*name);
+        } else {
+          map.error(element.place, fmt::format("{}: {} is not the name of a link", key,
+                                               describe_config(element.value)));
+        }
+      }
+      if (surface.links.empty()) map.error(entry->place, fmt::format("{} has no link", key));
+    } else if (const auto name = map.text(key)) {
+      surface.links.push_back(*name);
+    }
+  }
+  surface.geometry = read_choice(map, "geometry", "", {"visual", "collision"});
+  surface.points = map.count("points", surface.points);
+  if (surface.points < 1) map.error(block.place, "points is less than 1");
+  return surface;
+}
+
+/// Adds the model that stands for the surface of the robot to each block that needs it.
+void add_surface_models(ConfigMap& map, const std::string& base, StepConfig& step) {
+  std::map<std::string, std::string> blocks;  // by camera
+  for (BlockConfig& block : step.error_blocks) {
+    if (!block.surface || block.models.empty()) continue;
+    const std::string& camera = block.models.front();
+    const auto [other, is_new] = blocks.emplace(camera, block.name);
+    if (!is_new) {
+      map.error(block.place, fmt::format("error block '{}': block '{}' compares '{}' with the "
+                                         "surface of the robot already; list all links in one",
+                                         block.name, other->second, camera));
+    }
+    ModelConfig surface{camera + "_surface", "chain3d", base, "", block.place};
+    const auto is_taken = [&](const ModelConfig& model) { return model.name == surface.name; };
+    while (std::any_of(step.models.begin(), step.models.end(), is_taken)) surface.name += "_";
+    surface.param_name = surface.name;
+    surface.links = block.surface->links;
+    surface.is_surface = true;
+    block.models.push_back(surface.name);
+    step.models.push_back(std::move(surface));
+  }
 }
 
 /// Reads an error block and checks its models against those of the step.
@@ -125,7 +178,7 @@ void read_block_weighting(ConfigMap& map, BlockConfig& block) {
   if (entry == nullptr) return block;
   block.type = entry->read_as;
   for (const BlockSensorEntry& of_block : entry->sensors) {
-    read_block_model(map, of_block, models, block);
+    if (!of_block.keys.empty()) read_block_model(map, of_block, models, block);
   }
   for (std::size_t i = 1; i < block.models.size(); ++i) {
     const auto end = block.models.begin() + static_cast<std::ptrdiff_t>(i);
@@ -134,6 +187,7 @@ void read_block_weighting(ConfigMap& map, BlockConfig& block) {
     }
     map.error(item.place, "compares model '" + block.models[i] + "' with itself");
   }
+  if (block.type == PointToMesh::kType) block.surface = read_surface_of(map, block);
   if (entry->has_param) block.param = map.required_text("param").value_or("");
   read_block_numbers(map, *entry, block);
   read_block_weighting(map, block);
@@ -333,6 +387,7 @@ void read_step(ConfigMap& map, const FindConfigItems& find, const std::string& n
     step.error_blocks.push_back(read_block(item, step.models));
   }
   check_model_types(models, step);
+  add_surface_models(map, progress.config.base_link, step);
   step.initial_values = read_initial_values(map);
   step.initial_values.insert(step.initial_values.end(), fixed.begin(), fixed.end());
   step.bounds = read_bounds(map);

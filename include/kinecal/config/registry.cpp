@@ -132,6 +132,8 @@ Registry::Registry() {
       pair, {{"normal_scale", 1.0}, {"offset_scale", 1.0}}, [number](const BlockConfig& block) {
         return PlaneToPlane{number(block, "normal_scale"), number(block, "offset_scale")};
       }));
+  add(built_in_block<PointToMesh>({{"model", "model_a", "camera"}, {}}, {{"scale", 1.0}},
+                                  [](const BlockConfig&) { return PointToMesh{}; }));
   add(detail::prior_entry());
   for (BlockEntry& entry : blocks_) entry.is_upstream = true;
   add(built_in_block<PointDistance>(

@@ -110,15 +110,17 @@ void add_couplings(const Config& config, const Robot& robot, const std::vector<U
   };
   std::set<std::pair<std::string, std::string>> pairs;
   for (const ModelConfig& model : models_of(config)) {
-    if (!robot.has_link(model.frame) || !robot.has_link(config.base_link)) continue;
-    std::string before;
-    for (const ChainJoint& one : make_chain(robot, config.base_link, model.frame).joints) {
-      if (!has_position(one) || !is_used(one.drive.joint)) continue;
-      if (!before.empty() && before != one.drive.joint) {
-        pairs.insert({one.drive.joint, before});
-        pairs.insert({before, one.drive.joint});
+    for (const std::string& frame : model.frames()) {
+      if (!robot.has_link(frame) || !robot.has_link(config.base_link)) continue;
+      std::string before;
+      for (const ChainJoint& one : make_chain(robot, config.base_link, frame).joints) {
+        if (!has_position(one) || !is_used(one.drive.joint)) continue;
+        if (!before.empty() && before != one.drive.joint) {
+          pairs.insert({one.drive.joint, before});
+          pairs.insert({before, one.drive.joint});
+        }
+        before = one.drive.joint;
       }
-      before = one.drive.joint;
     }
   }
   for (const auto& pair : pairs) {

@@ -1,7 +1,7 @@
 // A sensor on its robot: its parameters and the chains from the base to what it observes.
 //
-// A feature is given in the sensor's own frame or in a virtual frame (a checkerboard, a tracker)
-// beyond it; each of these frames has its own chain.
+// A feature is given in the sensor's own frame, in a virtual frame (a checkerboard, a tracker)
+// beyond it, or in one of Mount::links; each of these frames has its own chain.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -39,7 +39,7 @@ class MountedSensor {
  public:
   /// @param frames  names of all free frames: a joint's name corrects that joint, any other name is
   ///                a virtual frame
-  /// @throws RobotError  if no chain leads from the base to the sensor's frame
+  /// @throws RobotError  if no chain leads from the base to the sensor's frame or a further link
   MountedSensor(const Robot& robot, const std::string& base, Mount mount,
                 std::shared_ptr<const AnySensor> sensor, const ParameterTable& table,
                 const std::set<std::string>& frames);
@@ -48,7 +48,7 @@ class MountedSensor {
   [[nodiscard]] const Mount& mount() const { return mount_; }
   /// The sensor itself.
   [[nodiscard]] const AnySensor& sensor() const { return *sensor_; }
-  /// The chain to the sensor's frame, then those to virtual frames.
+  /// The chain to the sensor's frame, then those to virtual frames and further links.
   [[nodiscard]] const std::vector<SampledChain>& chains() const { return chains_; }
   /// Table index of the sensor's lag behind the positions of the joints, seconds: its name is "lag"
   /// after the prefix; -1 if the table does not have it.
@@ -81,7 +81,7 @@ class MountedSensor {
   std::vector<int> parameters_;
   int lag_ = -1;
   std::vector<SampledChain>
-      chains_;  ///< [0] ends at the sensor's frame, the others at virtual frames
+      chains_;  ///< [0] ends at the sensor's frame, the others at virtual frames and further links
   std::map<std::string, std::size_t> chain_by_frame_;
 };
 

@@ -44,6 +44,10 @@ KINECAL_INLINE MountedSensor::MountedSensor(const Robot& robot, const std::strin
   for (const std::string& frame : frames) {
     if (!robot.has_joint(frame)) add_chain(robot, with_virtual_frame(chain, frame), table);
   }
+  for (const std::string& link : mount_.links) {
+    if (chain_by_frame_.contains(std::string(plain_frame(link)))) continue;
+    add_chain(robot, make_chain(robot, base, link, frames), table);
+  }
 }
 
 KINECAL_INLINE std::vector<double> MountedSensor::own_values(ParameterValues values) const {

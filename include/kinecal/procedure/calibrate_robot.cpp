@@ -18,6 +18,7 @@
 #include "kinecal/explain/judge_causes.hpp"
 #include "kinecal/explain/would_help.hpp"
 #include "kinecal/procedure/judge_read_back.hpp"
+#include "kinecal/procedure/surface_rounds.hpp"
 #include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/tools/identify/another_robot.hpp"
 #include "kinecal/tools/identify/open_config.hpp"
@@ -74,6 +75,25 @@ void leave_open(PreparedCalibration& prepared, Search search, bool is_proposed) 
   if (config.steps.size() == 1 && frees_nothing(config)) {
     free_unknown_poses(config, prepared.robot, prepared.samples);
   }
+}
+
+/// Associates clouds with the surface of the robot; returns where the solve begins.
+[[nodiscard]] std::vector<double> match_surface(PreparedCalibration& prepared,
+                                                const CalibrationOptions& options, bool is_open) {
+  const SurfaceInput input{prepared.robot,     prepared.urdf_text, prepared.urdf,
+                           options.mesh_paths, options.exclude,    options.solving.threads};
+  if (!is_open) {
+    return kinecal::match_surface(input, *prepared.config, prepared.samples, prepared.diagnostics);
+  }
+  Config poses = *prepared.config;  // what a search frees is not known yet
+  if (poses.steps.size() == 1 && frees_nothing(poses)) {
+    free_unknown_poses(poses, prepared.robot, prepared.samples);
+  }
+  (void)kinecal::match_surface(input, poses, prepared.samples, prepared.diagnostics);
+  for (std::size_t s = 0; s < poses.steps.size(); ++s) {
+    prepared.config->steps[s].models = poses.steps[s].models;  // they know the links now
+  }
+  return {};
 }
 
 /// "raw" or "rectified", by camera, where it was chosen.
@@ -311,8 +331,12 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
   if (!prepare_cameras(prepared.robot, config, prepared.samples, found)) return prepared;
   if (!is_open && waits) hold_parameters(config, options.hold, found);
   if (!is_good()) return prepared;
+  std::vector<double> begin;
+  if (compares_surface(config)) begin = detail::match_surface(prepared, options, is_open);
+  if (!is_good()) return prepared;
   is_open ? detail::leave_open(prepared, options.search, is_proposed)
           : detail::assemble(prepared, options.exclude);
+  prepared.calibration.begin = std::move(begin);
   return prepared;
 }
 

@@ -8,8 +8,8 @@
 //                                                       .urdf_text = urdf});
 //   if (calibrated.is_usable()) use(calibrated.result.table);
 //
-// 1. prepare(): offsets that the controller had added, what is held, lenses and where cameras begin; then the problems
-//    are assembled and the input is doubted.  Errors end here, all of them at once.
+// 1. prepare(): offsets that the controller had added, what is held, lenses and where cameras begin, which points lie on
+//    the surface of the robot (surface_rounds.hpp); then the problems are assembled and the input is doubted.  Errors end here, all of them at once.
 // 2. Where nothing is free, what the samples support is searched for (search_robot()).
 // 3. Solve, estimate the noise, leave out bad samples, assess, judge (calibrate_and_judge()).
 // 4. What explains a bad fit, what would help, how fast is still good; what those see who read the files.
@@ -62,6 +62,7 @@ struct CalibrationOptions {
   bool keep_outliers = false;          ///< no sample is left out
   std::vector<int> exclude = {};       ///< numbers of samples to leave out, from 1
   std::vector<std::string> hold = {};  ///< parameters, frames or candidates that keep their values
+  std::vector<std::string> mesh_paths = {};  ///< where the URDF's packages may be, for its surface
   Search search = Search::if_open;
   bool geometry_only = false;          ///< a search frees no joint models, which a URDF cannot hold
   int draw = 3000;                     ///< of calibrate_log(): samples on which a log is judged

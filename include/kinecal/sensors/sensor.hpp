@@ -40,6 +40,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "kinecal/parameters/parameter.hpp"
 #include "kinecal/samples/sample.hpp"
@@ -57,6 +58,7 @@ struct Mount {
   std::string name;             ///< of the sensor, as in the samples
   std::string frame;            ///< the link to which it is fixed
   std::string param_name = {};  ///< prefix of its parameters; empty: its name
+  std::vector<std::string> links = {};  ///< further links in which its features may be given
 
   /// Prefix of its parameters: "camera" of "camera_fx".
   [[nodiscard]] const std::string& parameter_prefix() const {

@@ -64,11 +64,13 @@ std::vector<const Joint*> joints_between(const Config& config, const Robot& robo
   std::set<std::string> above;
   for (const Joint* joint : joints_to_root(robot, config.base_link)) above.insert(joint->name);
   for (const ModelConfig& model : models_of(config)) {
-    if (!robot.has_link(model.frame)) continue;
-    std::set<std::string> way;
-    for (const Joint* joint : joints_to_root(robot, model.frame)) way.insert(joint->name);
-    std::set_symmetric_difference(above.begin(), above.end(), way.begin(), way.end(),
-                                  std::inserter(names, names.end()));
+    for (const std::string& frame : model.frames()) {
+      if (!robot.has_link(frame)) continue;
+      std::set<std::string> way;
+      for (const Joint* joint : joints_to_root(robot, frame)) way.insert(joint->name);
+      std::set_symmetric_difference(above.begin(), above.end(), way.begin(), way.end(),
+                                    std::inserter(names, names.end()));
+    }
   }
   std::vector<const Joint*> joints;
   for (const Joint& joint : robot.joints()) {

@@ -22,12 +22,14 @@ struct NoVisual {
   std::string why;
 };
 
-/// Reads <visual> elements.  They are no reason to reject a robot, so nothing here is an error of
+/// Reads <visual> or <collision> elements.  They are no reason to reject a robot, so nothing here is an error of
 /// the file.
 class VisualReader {
  public:
-  VisualReader(const UrdfText& urdf, Diagnostics& diagnostics)
-      : urdf_(urdf), diagnostics_(diagnostics) {
+  VisualReader(const UrdfText& urdf, Diagnostics& diagnostics, ShapeElement element)
+      : urdf_(urdf),
+        diagnostics_(diagnostics),
+        element_(element == ShapeElement::visual ? "visual" : "collision") {
     for (const pugi::xml_node material : urdf.robot().children("material")) {
       if (const auto color = color_in(material)) {
         colors_[material.attribute("name").value()] = *color;
@@ -38,13 +40,14 @@ class VisualReader {
   [[nodiscard]] std::vector<Visual> all() const {
     std::vector<Visual> visuals;
     for (const pugi::xml_node link : urdf_.robot().children("link")) {
-      for (const pugi::xml_node visual : link.children("visual")) {
+      for (const pugi::xml_node visual : link.children(element_)) {
         try {
           visuals.push_back(read(link, visual));
         } catch (const NoVisual& no) {
           diagnostics_.warning(urdf_.place(visual), "link '" +
                                                         printable(link.attribute("name").value()) +
-                                                        "': its <visual> is not drawn: " + no.why);
+                                                        "': its <" + element_ + "> is not drawn: " +
+                                                        no.why);
         }
       }
     }
@@ -142,6 +145,7 @@ class VisualReader {
 
   const UrdfText& urdf_;
   Diagnostics& diagnostics_;
+  const char* element_;
   std::map<std::string, Color> colors_;  ///< of materials by name
 };
 
@@ -149,9 +153,9 @@ class VisualReader {
 }  // namespace detail
 
 std::vector<Visual> visuals(const std::string& text, const std::string& name_for_messages,
-                            Diagnostics& diagnostics) {
+                            Diagnostics& diagnostics, ShapeElement element) {
   const detail::UrdfText urdf(text, name_for_messages);
-  return detail::VisualReader(urdf, diagnostics).all();
+  return detail::VisualReader(urdf, diagnostics, element).all();
 }
 
 }  // namespace kinecal

@@ -32,12 +32,17 @@ struct Visual {
   std::array<double, 4> color{0.7, 0.7, 0.7, 1.0};  ///< red, green, blue and opacity, 0 to 1
 };
 
+/// Elements of a link that have shapes.
+enum class ShapeElement { visual, collision };
+
 /// The visuals of all links, in text order.  Skips those that cannot be drawn, with a warning.
 /// @param text               the URDF, UTF-8
 /// @param name_for_messages  name of the text in messages: its file
+/// @param element            <visual>, or <collision>: shapes that are simpler, without colors
 /// @throws InputError  "file:line: message" if the text is not a URDF
 [[nodiscard]] std::vector<Visual> visuals(const std::string& text,
                                           const std::string& name_for_messages,
-                                          Diagnostics& diagnostics);
+                                          Diagnostics& diagnostics,
+                                          ShapeElement element = ShapeElement::visual);
 
 }  // namespace kinecal

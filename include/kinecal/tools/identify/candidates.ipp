@@ -32,8 +32,10 @@ struct ModelChain {
                                                           const std::set<std::string>& kept = {}) {
   std::vector<ModelChain> chains;
   for (const ModelConfig& model : config.steps.front().models) {
-    if (!robot.has_link(model.frame) || !robot.has_link(config.base_link)) continue;
-    chains.push_back({&model, make_chain(robot, config.base_link, model.frame, kept)});
+    for (const std::string& frame : model.frames()) {
+      if (!robot.has_link(frame) || !robot.has_link(config.base_link)) continue;
+      chains.push_back({&model, make_chain(robot, config.base_link, frame, kept)});
+    }
   }
   return chains;
 }

@@ -1,0 +1,745 @@
+// Definitions of surface_rounds.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/procedure/surface_rounds.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/loss_names.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/geometry/median.hpp"
+#include "kinecal/geometry/rotation.hpp"
+#include "kinecal/surface/pose_search.hpp"
+#include "kinecal/surface/surface_match.hpp"
+#include "kinecal/text/counted.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/trust/uncertainty/feature_places.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+constexpr double kWidest = 0.3;      ///< metres, of the first gate
+constexpr double kNarrowest = 0.01;  ///< metres, of a gate without a loss
+constexpr double kScales = 20.0;     ///< scales of a loss, of the gate with one
+constexpr double kOnRobot = 0.02;    ///< metres: a point within lies on the robot
+constexpr int kFewPoints = 400;      ///< of a sample, in coarse rounds
+
+/// A block that compares a camera with the surface of the robot.
+struct SurfaceBlock {
+  std::string name;  ///< of the error block
+  SurfacePair pair;
+  RobotSurface surface;
+};
+
+[[nodiscard]] const BlockConfig& block_of(const StepConfig& step, const std::string& name) {
+  return *std::find_if(step.error_blocks.begin(), step.error_blocks.end(),
+                       [&](const BlockConfig& block) { return block.name == name; });
+}
+
+/// Reads the surfaces that the blocks of a configuration need, and names their links in it.
+class SurfaceResolver {
+ public:
+  SurfaceResolver(const SurfaceInput& input, Config& config, Diagnostics& diagnostics)
+      : input_(input), config_(config), diagnostics_(diagnostics) {}
+
+  /// The blocks of each step.
+  [[nodiscard]] std::vector<std::vector<SurfaceBlock>> read() {
+    std::vector<std::vector<SurfaceBlock>> all;
+    for (StepConfig& step : config_.steps) {
+      std::vector<SurfaceBlock>& blocks = all.emplace_back();
+      for (BlockConfig& block : step.error_blocks) {
+        if (block.surface) blocks.push_back(resolved(step, block));
+      }
+    }
+    return all;
+  }
+
+ private:
+  [[nodiscard]] SurfaceBlock resolved(StepConfig& step, BlockConfig& block) {
+    SurfaceConfig& of = *block.surface;
+    SurfaceBlock resolved{block.name, {block.models.at(0), block.models.at(1)}, {}};
+    const auto model = [&](const std::string& name) -> ModelConfig& {
+      return *std::find_if(step.models.begin(), step.models.end(),
+                           [&](const ModelConfig& one) { return one.name == name; });
+    };
+    if (!are_links(block, of.links)) return resolved;
+    const std::pair key(of.geometry, of.links);
+    if (const auto known = surfaces_.find(key); known != surfaces_.end()) {
+      resolved.surface = known->second;
+    } else {
+      resolved.surface = read_surface(
+          input_.urdf_text,
+          {input_.urdf, mesh_places(input_.urdf, input_.mesh_paths),
+           of.geometry == "visual"      ? SurfaceGeometry::visual
+           : of.geometry == "collision" ? SurfaceGeometry::collision
+                                        : SurfaceGeometry::automatic,
+           of.links, block.place},
+          diagnostics_);
+      surfaces_.emplace(key, resolved.surface);
+    }
+    if (of.links.empty()) {
+      resolved.surface = without_camera(std::move(resolved.surface), step, block,
+                                        model(resolved.pair.camera).frame);
+    }
+    std::vector<std::string> links;
+    for (const SurfaceLink& link : resolved.surface.links()) links.push_back(link.name);
+    model(resolved.pair.robot).links = links;
+    return resolved;
+  }
+
+  /// False, with errors, if some link does not exist.
+  [[nodiscard]] bool are_links(const BlockConfig& block, const std::vector<std::string>& links) {
+    const std::size_t before = diagnostics_.errors.size();
+    for (const std::string& link : links) {
+      if (input_.robot.has_link(link)) continue;
+      diagnostics_.error(block.place, fmt::format("error block '{}': no link '{}' in robot '{}'{}",
+                                                  block.name, link, input_.robot.name(),
+                                                  did_you_mean(link, input_.robot.link_names())));
+    }
+    return diagnostics_.errors.size() == before;
+  }
+
+  /// Leaves out what the camera is fixed to: it sees past that, and its pose there is not measured by it.
+  [[nodiscard]] RobotSurface without_camera(RobotSurface surface, const StepConfig& step,
+                                            const BlockConfig& block, const std::string& frame) {
+    std::vector<SurfaceLink> others;
+    std::vector<std::string> left_out;
+    const std::string rig = carrier(step, frame);
+    for (const SurfaceLink& link : surface.links()) {
+      const bool is_carrier = carrier(step, link.name) == rig;
+      if (is_carrier) left_out.push_back(link.name);
+      if (!is_carrier) others.push_back(link);
+    }
+    if (!left_out.empty()) {
+      diagnostics_.note(block.place,
+                        fmt::format("error block '{}' leaves out the links that the camera is fixed "
+                                    "to: {}; list them under 'links' to use them",
+                                    block.name, fmt::join(left_out, ", ")));
+    }
+    return RobotSurface(std::move(others));
+  }
+
+  /// The first link up to which a link is fixed by joints that nothing moves or corrects.
+  [[nodiscard]] std::string carrier(const StepConfig& step, std::string link) const {
+    while (input_.robot.has_link(link)) {
+      const Joint* joint = input_.robot.parent_joint(link);
+      if (joint == nullptr || joint->type != JointType::fixed) break;
+      const auto frees = [&](const FreeFrameConfig& frame) { return frame.name == joint->name; };
+      if (std::any_of(step.free_frames.begin(), step.free_frames.end(), frees)) break;
+      link = joint->parent;
+    }
+    return link;
+  }
+
+  const SurfaceInput& input_;
+  Config& config_;
+  Diagnostics& diagnostics_;
+  std::map<std::pair<std::string, std::vector<std::string>>, RobotSurface> surfaces_;
+};
+
+/// How points count in a round.
+struct RoundManner {
+  double gate = kWidest;            ///< metres
+  std::optional<double> huber = {};  ///< metres, of a loss in place of the configured one
+  int rounds = 1;                   ///< at most
+  double tolerance = 1e-8;          ///< relative fall of the cost at which rounds end
+  bool only_front = false;          ///< a point on the far side of a link counts as if beyond the gate
+};
+
+/// A state of the rounds: what fits the values.
+struct RoundState {
+  Eigen::VectorXd values;
+  std::vector<SurfaceHits> hits = {};  ///< by block
+  std::vector<int> free = {};          ///< table indices of the columns of the sums
+  NormalEquations sums = NormalEquations(0);
+  double cost = std::numeric_limits<double>::infinity();  ///< with those beyond the gate
+};
+
+/// The rounds of one step.
+class SurfaceRounds {
+ public:
+  /// @param samples  of the camera, without the surface
+  SurfaceRounds(const SurfaceInput& input, const Config& config, std::size_t step,
+                const std::vector<SurfaceBlock>& blocks)
+      : input_(input), config_(config), step_(step), blocks_(blocks) {}
+
+  /// Goes downhill from values; returns the state in which it ended.
+  [[nodiscard]] RoundState run(const RoundManner& manner, std::span<const Sample> samples,
+                               const Eigen::VectorXd& values) const {
+    const std::unique_ptr<AnyProblem> problem = problem_for(manner);
+    RoundState state = evaluated(*problem, manner, samples, values, {});
+    double damping = 1e-3;
+    for (int round = 0; round < manner.rounds; ++round) {
+      const RoundState next =
+          evaluated(*problem, manner, samples, stepped(*problem, state, damping), state.hits);
+      const bool is_better = next.cost < state.cost;
+      const bool is_settled =
+          std::abs(state.cost - next.cost) <= manner.tolerance * std::abs(state.cost);
+      if (is_better) state = next;
+      damping = is_better ? std::max(1e-9, 0.1 * damping) : 10.0 * damping;
+      if (is_settled || damping > 1e6) break;
+    }
+    return state;
+  }
+
+  /// The problem of the step without samples, with the losses of a round.
+  [[nodiscard]] std::unique_ptr<AnyProblem> problem_for(const RoundManner& manner) const {
+    Config config = config_;
+    if (manner.huber) {
+      for (BlockConfig& block : config.steps[step_].error_blocks) {
+        const double weight = block.numbers.contains("scale") ? block.numbers.at("scale") : 1.0;
+        if (block.surface) {
+          block.loss = {"huber", *manner.huber * weight / block.sigma.value_or(1.0)};
+        }
+      }
+    }
+    Diagnostics quiet;
+    Calibration calibration = kinecal::assemble(config, input_.robot, {}, quiet);
+    quiet.throw_if_errors();
+    return std::move(calibration.steps.at(step_).problem);
+  }
+
+  /// The free parameters of the step that samples affect.
+  [[nodiscard]] FreeSet free_of(const AnyProblem& problem) const {
+    const std::vector<int> touched = problem.touched_parameters();
+    std::vector<int> free;
+    for (const FreeParamConfig& parameter : free_parameters(config_.steps[step_])) {
+      const int index = problem.table().find(parameter.name);
+      if (std::binary_search(touched.begin(), touched.end(), index)) free.push_back(index);
+    }
+    return FreeSet(std::move(free), problem.table().size());
+  }
+
+  [[nodiscard]] std::vector<Sample> matched(std::span<const Sample> samples,
+                                            const std::vector<SurfaceHits>& hits,
+                                            double gate) const {
+    std::vector<Sample> all(samples.begin(), samples.end());
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      all = with_surface(blocks_[b].surface, blocks_[b].pair, all, hits[b], gate);
+    }
+    return all;
+  }
+
+  /// The nearest points of all samples.
+  void associate(const AnyProblem& problem, std::span<const Sample> samples,
+                 const Eigen::VectorXd& values, double bound,
+                 std::vector<SurfaceHits>& hits) const {
+    hits.resize(blocks_.size());
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      kinecal::associate(blocks_[b].surface, blocks_[b].pair, problem, span_of(values), samples,
+                         bound, input_.threads, hits[b]);
+    }
+  }
+
+  [[nodiscard]] static ParameterValues span_of(const Eigen::VectorXd& values) {
+    return {values.data(), static_cast<std::size_t>(values.size())};
+  }
+
+ private:
+  [[nodiscard]] RoundState evaluated(const AnyProblem& empty, const RoundManner& manner,
+                                     std::span<const Sample> samples, Eigen::VectorXd values,
+                                     std::vector<SurfaceHits> hits) const {
+    RoundState state{.values = std::move(values), .hits = std::move(hits)};
+    associate(empty, samples, state.values, manner.gate, state.hits);
+    if (manner.only_front) drop_backs(empty, samples, state);
+    const std::unique_ptr<AnyProblem> problem = empty.without_samples();
+    for (const Sample& sample : matched(samples, state.hits, manner.gate)) {
+      problem->add_sample(sample);
+    }
+    const FreeSet free = free_of(*problem);
+    if (free.size() == 0) return state;
+    state.sums = normal_equations(*problem, span_of(state.values), &free, Losses::as_given,
+                                  input_.threads);
+    state.cost = state.sums.cost + cost_beyond(*problem, manner, state.hits);
+    if (!std::isfinite(state.cost)) state.cost = std::numeric_limits<double>::infinity();
+    state.free = free.parameters();
+    return state;
+  }
+
+  /// What points beyond the gate cost.
+  [[nodiscard]] double cost_beyond(const AnyProblem& problem, const RoundManner& manner,
+                                   const std::vector<SurfaceHits>& hits) const {
+    double cost = 0.0;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      for (int t = 0; t < problem.num_terms(); ++t) {
+        const Term& term = problem.term(t);
+        if (term.name != blocks_[b].name) continue;
+        const double most = std::pow(term.weight * manner.gate, 2);
+        std::size_t beyond = 0;
+        for (const auto& of_sample : hits[b]) {
+          beyond += static_cast<std::size_t>(
+              std::count_if(of_sample.begin(), of_sample.end(),
+                            [](const SurfaceHit& hit) { return hit.link < 0; }));
+        }
+        cost += 0.5 * static_cast<double>(beyond) * term.options.loss(most).rho;
+      }
+    }
+    return cost;
+  }
+
+  /// Points whose face looks away from the camera do not lie there.
+  void drop_backs(const AnyProblem& problem, std::span<const Sample> samples,
+                  RoundState& state) const {
+    const FeaturePlaces places(problem, span_of(state.values));
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const std::vector<MountedSensor>& sensors = problem.sensors();
+      const auto camera =
+          std::find_if(sensors.begin(), sensors.end(), [&](const MountedSensor& sensor) {
+            return sensor.mount().name == blocks_[b].pair.camera;
+          });
+      for (std::size_t s = 0; s < samples.size(); ++s) {
+        const Observation* seen = samples[s].observation(blocks_[b].pair.camera);
+        if (seen == nullptr) continue;
+        const std::vector<PlacedFeature> placed =
+            places.placed(static_cast<int>(camera - sensors.begin()), *seen, samples[s]);
+        for (std::size_t i = 0; i < placed.size(); ++i) {
+          SurfaceHit& hit = state.hits[b][s][i];
+          if (hit.link >= 0 && hit.face.dot(placed[i].origin - placed[i].point) < 0.0) hit = {};
+        }
+      }
+    }
+  }
+
+  /// Values after a damped step, inside of bounds.
+  [[nodiscard]] Eigen::VectorXd stepped(const AnyProblem& problem, const RoundState& state,
+                                        double damping) const {
+    Eigen::VectorXd values = state.values;
+    const Eigen::Index n = state.sums.gradient.size();
+    if (n == 0) return values;
+    Eigen::MatrixXd hessian = state.sums.hessian;
+    const double mean = hessian.trace() / static_cast<double>(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      hessian(i, i) += damping * hessian(i, i) + 1e-9 * mean + 1e-30;
+    }
+    const Eigen::VectorXd step = hessian.ldlt().solve(-state.sums.gradient);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const int p = state.free[static_cast<std::size_t>(i)];
+      const Parameter& parameter = problem.table()[p];
+      values[p] = std::clamp(values[p] + step[i], parameter.lower, parameter.upper);
+    }
+    return values;
+  }
+
+  const SurfaceInput& input_;
+  const Config& config_;
+  std::size_t step_;
+  const std::vector<SurfaceBlock>& blocks_;
+};
+
+/// The frame of a camera whose pose is searched for: its chain in two parts.
+class SearchedFrame {
+ public:
+  /// @param frame    with six free axes
+  /// @param problem  of the step
+  SearchedFrame(const UnknownFrame& frame, const AnyProblem& problem, const std::string& camera)
+      : frame_(frame), problem_(problem) {
+    for (std::size_t s = 0; s < problem.sensors().size(); ++s) {
+      if (problem.sensors()[s].mount().name == camera) camera_ = static_cast<int>(s);
+    }
+    const RuntimeChain& chain = sensor().chains().front().chain();
+    const auto joint =
+        std::find_if(chain.joints.begin(), chain.joints.end(), [&](const ChainJoint& one) {
+          return one.name == frame.name && one.corrected && !one.reversed;
+        });
+    const bool turns = std::all_of(frame.axes.begin(), frame.axes.end(), [](int p) { return p >= 0; });
+    if (joint == chain.joints.end() || !turns) return;
+    RuntimeChain up_to = chain;
+    up_to.joints.assign(chain.joints.begin(), joint + 1);
+    up_to.tail = {};
+    before_.emplace(problem.robot(), std::move(up_to), problem.table());
+  }
+
+  /// False if no pose can be searched for.
+  [[nodiscard]] bool is_usable() const { return before_.has_value(); }
+
+  /// The cloud of a sample in the frame, and the links before it.
+  [[nodiscard]] PosedCloud posed(const RobotSurface& surface, const SurfacePair& pair,
+                                 const Sample& sample, const Eigen::VectorXd& values) const {
+    Eigen::VectorXd zero = values;
+    for (const int p : frame_.axes) zero[p] = 0.0;
+    const ParameterValues at = SurfaceRounds::span_of(zero);
+    const Pose<double> before_T_base =
+        before_->tip(sample, corrections_for(before_->parameters(), at)).inverse();
+    PosedCloud posed;
+    const Observation* seen = sample.observation(pair.camera);
+    if (seen == nullptr) return posed;
+    for (const PlacedFeature& point :
+         FeaturePlaces(problem_, at).placed(camera_, *seen, sample)) {
+      if (point.seen) posed.points.push_back(before_T_base * point.point);
+    }
+    for (const Pose<double>& link : link_poses(surface, pair, problem_, at, sample)) {
+      posed.links.push_back(before_T_base * link);
+    }
+    return posed;
+  }
+
+  /// Values with the frame in a pose.
+  [[nodiscard]] Eigen::VectorXd with(const Pose<double>& pose, Eigen::VectorXd values) const {
+    const Vector3<double> turn = log(pose.rotation);
+    for (std::size_t k = 0; k < 3; ++k) {
+      values[frame_.axes[k]] = pose.translation[static_cast<Eigen::Index>(k)];
+      values[frame_.axes[k + 3]] = turn[static_cast<Eigen::Index>(k)];
+    }
+    return values;
+  }
+
+ private:
+  [[nodiscard]] const MountedSensor& sensor() const {
+    return problem_.sensors()[static_cast<std::size_t>(camera_)];
+  }
+
+  const UnknownFrame& frame_;
+  const AnyProblem& problem_;
+  int camera_ = 0;
+  std::optional<SampledChain> before_;
+};
+
+/// How well the points of a block lie on the robot.
+struct SurfaceQuality {
+  std::vector<double> distances;  ///< of all points, metres; infinite beyond the bound
+  [[nodiscard]] double share(double within) const {
+    return static_cast<double>(std::count_if(distances.begin(), distances.end(),
+                                             [&](double d) { return d <= within; })) /
+           static_cast<double>(std::max<std::size_t>(1, distances.size()));
+  }
+  /// Of the points near the robot, the share that lies on it: about a quarter by chance.
+  [[nodiscard]] double contrast() const {
+    return share(kOnRobot / 2.0) / std::max(1e-12, share(2.5 * kOnRobot));
+  }
+};
+
+[[nodiscard]] SurfaceQuality quality_of(const SurfaceHits& hits) {
+  SurfaceQuality quality;
+  for (const auto& of_sample : hits) {
+    for (const SurfaceHit& hit : of_sample) quality.distances.push_back(hit.distance);
+  }
+  return quality;
+}
+
+/// The whole of the rounds of a step.
+class SurfaceFit {
+ public:
+  SurfaceFit(const SurfaceInput& input, const Config& config, std::size_t step,
+             const std::vector<SurfaceBlock>& blocks)
+      : config_(config.steps[step]), blocks_(blocks), rounds_(input, config, step, blocks) {}
+
+  /// Where the rounds end.
+  /// @param unknown  frames whose pose may be searched for
+  [[nodiscard]] RoundState run(std::span<const Sample> samples, const Eigen::VectorXd& start,
+                               std::span<const UnknownFrame> unknown, Diagnostics& diagnostics) {
+    std::vector<Sample> few(samples.begin(), samples.end());
+    for (const SurfaceBlock& block : blocks_) {
+      few = with_fewer_points(few, block.pair.camera, kFewPoints);
+    }
+    const bool is_lost = std::any_of(unknown.begin(), unknown.end(),
+                                     [](const UnknownFrame& frame) { return !frame.has_guess; });
+    constexpr double kGood = 0.6;  // of quality
+    std::optional<RoundState> best;
+    if (!is_lost) best = coarse(few, start, kWidest);
+    if (!best || contrast(few, *best) < kGood) {
+      for (const Eigen::VectorXd& values : searched(few, start, unknown)) {
+        RoundState found = coarse(few, values, kWidest / 3.0);
+        if (!best || ranked(few, found) < ranked(few, *best)) best = std::move(found);
+      }
+      if (is_lost && best) {
+        diagnostics.notes.push_back("the pose of '" + unknown.front().name +
+                                    "' was searched for: the surface of the robot in the clouds "
+                                    "gives it");
+      }
+    }
+    if (!best) best = coarse(few, start, kWidest);
+    return fine(samples, best->values);
+  }
+
+  /// The gate beyond which points of a block do not count in the end, metres.
+  [[nodiscard]] double gate() const { return gate_; }
+
+ private:
+  [[nodiscard]] RoundState coarse(std::span<const Sample> samples, Eigen::VectorXd values,
+                                  double widest) const {
+    constexpr double kLast = 0.03, kFactor = 0.6, kHuber = 0.1;
+    RoundState state;
+    for (double gate = widest;; gate = std::max(kLast, kFactor * gate)) {
+      state = rounds_.run({.gate = gate, .huber = kHuber * gate, .rounds = 3, .tolerance = 1e-3},
+                          samples, values);
+      values = state.values;
+      if (gate <= kLast) return state;
+    }
+  }
+
+  /// A cost by which ends of rounds are compared.
+  [[nodiscard]] double ranked(std::span<const Sample> samples, const RoundState& state) const {
+    return rounds_
+        .run({.gate = 0.1, .huber = 0.01, .rounds = 0, .only_front = true}, samples, state.values)
+        .cost;
+  }
+
+  [[nodiscard]] double contrast(std::span<const Sample> samples, const RoundState& state) const {
+    std::vector<SurfaceHits> hits;
+    rounds_.associate(*rounds_.problem_for({}), samples, state.values, kWidest, hits);
+    double least = 1.0;
+    for (const SurfaceHits& of_block : hits) least = std::min(least, quality_of(of_block).contrast());
+    return least;
+  }
+
+  /// Values with poses that a search found.
+  [[nodiscard]] std::vector<Eigen::VectorXd> searched(std::span<const Sample> samples,
+                                                      const Eigen::VectorXd& start,
+                                                      std::span<const UnknownFrame> unknown) const {
+    const std::unique_ptr<AnyProblem> problem = rounds_.problem_for({});
+    std::vector<Eigen::VectorXd> all;
+    for (const SurfaceBlock& block : blocks_) {
+      for (const UnknownFrame& frame : unknown) {
+        const SearchedFrame searched(frame, *problem, block.pair.camera);
+        if (!searched.is_usable()) continue;
+        std::vector<PosedCloud> clouds;
+        for (const Sample& sample : samples) {
+          clouds.push_back(searched.posed(block.surface, block.pair, sample, start));
+        }
+        for (const Pose<double>& pose : find_poses(block.surface, clouds)) {
+          all.push_back(searched.with(pose, start));
+        }
+      }
+    }
+    return all;
+  }
+
+  [[nodiscard]] RoundState fine(std::span<const Sample> samples, const Eigen::VectorXd& values) {
+    constexpr int kMost = 40;
+    double scale = 0.0;  // metres, the widest of the losses
+    for (const BlockConfig& block : config_.error_blocks) {
+      if (!block.surface || block.loss.type == "none") continue;
+      const double weight = block.numbers.contains("scale") ? block.numbers.at("scale") : 1.0;
+      scale = std::max(scale, block.loss.scale * block.sigma.value_or(1.0) / weight);
+    }
+    if (scale > 0.0) {
+      gate_ = kScales * scale;
+      return rounds_.run({.gate = gate_, .rounds = kMost}, samples, values);
+    }
+    gate_ = 0.1;
+    RoundState state{.values = values};
+    for (int round = 0; round < kMost; ++round) {
+      state = rounds_.run({.gate = gate_, .rounds = 3}, samples, state.values);
+      std::vector<double> near;
+      for (const SurfaceHits& of_block : state.hits) {
+        for (const double d : quality_of(of_block).distances) {
+          if (d <= gate_) near.push_back(d);
+        }
+      }
+      if (near.empty()) break;
+      constexpr double kRobust = 4.0 * 1.4826;
+      const double next = std::clamp(kRobust * median_of(std::move(near)), kNarrowest, gate_);
+      const bool is_settled = next > 0.99 * gate_;
+      gate_ = next;
+      if (is_settled) break;
+    }
+    return rounds_.run({.gate = gate_, .rounds = kMost}, samples, state.values);
+  }
+
+  const StepConfig& config_;
+  const std::vector<SurfaceBlock>& blocks_;
+  SurfaceRounds rounds_;
+  double gate_ = kWidest;
+};
+
+/// Says how the points of a camera lie on the robot; an error if they do not.
+void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate, const SurfaceHits& hits,
+            std::size_t samples, Diagnostics& diagnostics) {
+  const SurfaceQuality quality = quality_of(hits);
+  if (quality.distances.empty()) return;  // assemble() says so
+  const double on = quality.share(kOnRobot);
+  const std::string cloud =
+      fmt::format("{} of sensor '{}' in {}", counted(quality.distances.size(), "point"),
+                  block.pair.camera, counted(samples, "sample"));
+  constexpr double kFewest = 0.01, kChance = 0.55;
+  if (on < kFewest || quality.contrast() < kChance) {
+    diagnostics.error(
+        of.place,
+        fmt::format("error block '{}': the points do not lie on the robot.  Of {}, {:.1f} % are "
+                    "within {:.0f} mm of its surface after the best fit, and of those within {:.0f} "
+                    "mm {:.0f} % within {:.0f} mm: as many as by chance.  Are these clouds of this "
+                    "robot, in metres, in the frame of the camera, with the joints of the same time?  "
+                    "If the camera's pose is far off, leave its initial values out: then it is "
+                    "searched for",
+                    of.name, cloud, 100.0 * on, 1e3 * kOnRobot, 2.5e3 * kOnRobot,
+                    100.0 * quality.contrast(), 0.5e3 * kOnRobot));
+    return;
+  }
+  const LossType type = loss_type(of.loss.type);
+  double cost = 0.0;
+  const double weight = (of.numbers.contains("scale") ? of.numbers.at("scale") : 1.0) /
+                        of.sigma.value_or(1.0);
+  for (const double d : quality.distances) {
+    cost += 0.5 * Loss{type, of.loss.scale}(std::pow(weight * d, 2)).rho;
+  }
+  std::string text = fmt::format(
+      "error block '{}': {}: {:.1f} % lie within {:.0f} mm of the robot, {:.1f} % within {:.4g} mm, "
+      "and those count; the median distance of all is {:.3f} mm",
+      of.name, cloud, 100.0 * on, 1e3 * kOnRobot, 100.0 * quality.share(gate), 1e3 * gate,
+      1e3 * median_of(quality.distances));
+  if (type != LossType::none) text += fmt::format(", their cost {:.6f}", cost);
+  diagnostics.note(of.place, text);
+}
+
+/// Doubts a camera that stands inside of a link.
+void check_camera(const SurfaceBlock& block, const BlockConfig& of, const AnyProblem& problem,
+                  std::span<const Sample> samples, const Eigen::VectorXd& values,
+                  Diagnostics& diagnostics) {
+  for (const Sample& sample : samples) {
+    const std::vector<MountedSensor>& sensors = problem.sensors();
+    const auto camera = std::find_if(
+        sensors.begin(), sensors.end(),
+        [&](const MountedSensor& sensor) { return sensor.mount().name == block.pair.camera; });
+    const SampledChain& chain = camera->chains().front();
+    const ParameterValues at = SurfaceRounds::span_of(values);
+    const Vector3<double> eye =
+        chain.tip(sample, corrections_for(chain.parameters(), at)).translation;
+    const SurfaceHit hit =
+        block.surface.closest(link_poses(block.surface, block.pair, problem, at, sample), eye);
+    if (hit.link < 0 || hit.distance < 0.005) continue;  // on the shell: it looks out of it
+    const SurfaceLink& link = block.surface.links()[static_cast<std::size_t>(hit.link)];
+    const SurfaceFacts& facts = link.tree.facts();
+    const bool is_outward = facts.volume > 0.0;
+    // Inside, the vector from the surface points against the outward normal.
+    const Pose<double> base_T_link = link_poses(block.surface, block.pair, problem, at,
+                                                sample)[static_cast<std::size_t>(hit.link)];
+    const Vector3<double> off = eye - base_T_link * hit.point;
+    if (!facts.closed || (off.dot(hit.face) > 0.0) == is_outward) continue;
+    diagnostics.doubt(of.place,
+                      fmt::format("error block '{}': after the fit the camera of sensor '{}' stands "
+                                  "{:.0f} mm inside of link '{}' in {}; leave that link out of "
+                                  "'links' if it is the camera's housing, else the pose is wrong",
+                                  of.name, block.pair.camera, 1e3 * hit.distance, link.name,
+                                  sample.source));
+    return;
+  }
+}
+
+/// Refuses clouds that cannot be in metres.
+void check_units(const SurfaceBlock& block, std::span<const Sample> samples,
+                 Diagnostics& diagnostics) {
+  constexpr double kFarthest = 50.0;  // metres, of half of the points of a cloud
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(block.pair.camera);
+    std::vector<double> distances;
+    if (seen != nullptr) {
+      for (const Feature& feature : seen->features) {
+        if (feature.point.allFinite()) distances.push_back(feature.point.norm());
+      }
+    }
+    if (distances.empty()) continue;
+    const double median = median_of(std::move(distances));
+    if (median < kFarthest) continue;
+    diagnostics.errors.push_back(
+        fmt::format("{}: half of the points of sensor '{}' are more than {:.0f} m away: they are "
+                    "not in metres (millimetres?); divide them by 1000",
+                    sample.source, block.pair.camera, median));
+    return;
+  }
+}
+
+/// A few points on the first link, to assemble what depends on samples.
+[[nodiscard]] std::vector<Sample> assumed_samples(const std::vector<SurfaceBlock>& blocks,
+                                                  std::span<const Sample> samples,
+                                                  const std::string& base) {
+  constexpr int kPoints = 8;
+  std::vector<Sample> all(samples.begin(), samples.end());
+  for (const SurfaceBlock& block : blocks) {
+    all = with_fewer_points(all, block.pair.camera, kPoints);
+    for (Sample& sample : all) {
+      const Observation* seen = sample.observation(block.pair.camera);
+      if (seen == nullptr) continue;
+      Observation robot{.sensor = block.pair.robot, .features = {}};
+      for (const Feature& feature : seen->features) {
+        robot.features.push_back({.frame = base,
+                                  .id = feature.id,
+                                  .conditions = {{"nx", 0.0}, {"ny", 0.0}, {"nz", 1.0}}});
+      }
+      sample.observations.push_back(std::move(robot));
+    }
+  }
+  return all;
+}
+
+/// The samples without those that are excluded.
+[[nodiscard]] std::vector<Sample> heard(std::span<const Sample> samples,
+                                        const std::vector<int>& exclude) {
+  const std::set<int> numbers(exclude.begin(), exclude.end());
+  std::vector<Sample> others;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!numbers.contains(static_cast<int>(i) + 1)) others.push_back(samples[i]);
+  }
+  return others;
+}
+
+}  // namespace
+}  // namespace detail
+
+bool compares_surface(const Config& config) {
+  return std::any_of(config.steps.begin(), config.steps.end(), [](const StepConfig& step) {
+    return std::any_of(step.error_blocks.begin(), step.error_blocks.end(),
+                       [](const BlockConfig& block) { return block.surface.has_value(); });
+  });
+}
+
+std::vector<double> match_surface(const SurfaceInput& input, Config& config,
+                                  std::vector<Sample>& samples, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.errors.size();
+  const std::vector<std::vector<detail::SurfaceBlock>> steps =
+      detail::SurfaceResolver(input, config, diagnostics).read();
+  if (diagnostics.errors.size() > before || samples.empty()) return {};
+  Eigen::VectorXd values;
+  std::vector<Sample> matched = samples;
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    const std::vector<detail::SurfaceBlock>& blocks = steps[s];
+    if (blocks.empty()) continue;
+    for (const detail::SurfaceBlock& block : blocks) {
+      detail::check_units(block, samples, diagnostics);
+      const int most = detail::block_of(config.steps[s], block.name).surface->points;
+      matched = with_fewer_points(matched, block.pair.camera, most);
+    }
+    if (diagnostics.errors.size() > before) return {};
+    Diagnostics quiet;
+    const Calibration assumed = assemble(
+        config, input.robot, detail::assumed_samples(blocks, matched, config.base_link), quiet);
+    if (!quiet.errors.empty()) {
+      diagnostics.errors.insert(diagnostics.errors.end(), quiet.errors.begin(), quiet.errors.end());
+      return {};
+    }
+    if (values.size() == 0) values = assumed.table.values();
+    for (const auto& [index, value] : assumed.steps[s].assignments) values[index] = value;
+    const std::vector<Sample> heard = detail::heard(matched, input.exclude);
+    detail::SurfaceFit fit(input, config, s, blocks);
+    values = fit.run(heard, values, assumed.steps[s].unknown_frames, diagnostics).values;
+    const detail::SurfaceRounds rounds(input, config, s, blocks);
+    const std::unique_ptr<AnyProblem> problem = rounds.problem_for({});
+    std::vector<SurfaceHits> hits;
+    rounds.associate(*problem, matched, values, std::numeric_limits<double>::infinity(), hits);
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const BlockConfig& of = detail::block_of(config.steps[s], blocks[b].name);
+      detail::report_fit(blocks[b], of, fit.gate(), hits[b], matched.size(), diagnostics);
+      detail::check_camera(blocks[b], of, *problem, matched, values, diagnostics);
+    }
+    matched = rounds.matched(matched, hits, fit.gate());
+  }
+  if (diagnostics.errors.size() > before) return {};
+  samples = std::move(matched);
+  return {values.data(), values.data() + values.size()};
+}
+
+}  // namespace kinecal

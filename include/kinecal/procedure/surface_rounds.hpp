@@ -1,0 +1,44 @@
+// Rounds of association for calibrations that compare points with the surface of the robot (chain3d_to_mesh).
+//
+// 1. The meshes of the URDF become the links of the sensor that stands for the surface.
+// 2. Coarse rounds on a few points: nearest points of the surface, a step, and again with a narrower gate.  Where the pose
+//    of a camera is unknown, or the start ends badly, poses are searched for first (surface/pose_search.hpp).
+// 3. Fine rounds on all points with the loss of the configuration: Levenberg-Marquardt on the true distances, until cost
+//    and associations settle.  Without a loss, points beyond four robust sigmas (at least kNarrowest) count as strangers.
+// 4. The samples get the nearest points as an ordinary observation; points beyond the gate are left out.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinecal/config/config.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal {
+
+/// What rounds of association need beside a configuration and its samples.
+struct SurfaceInput {
+  const Robot& robot;
+  std::string urdf_text;                ///< of the robot
+  std::string urdf;                     ///< its name: meshes are relative to it
+  std::vector<std::string> mesh_paths;  ///< further folders of packages
+  std::vector<int> exclude = {};        ///< numbers of samples that have no say, from 1
+  int threads = 0;                      ///< zero: one per core; does not affect the result
+};
+
+/// True if an error block compares points with the surface of the robot.
+[[nodiscard]] bool compares_surface(const Config& config);
+
+/// Associates the points of all samples with the surface of the robot.
+/// @param config   gets the links of the surface
+/// @param samples  get the observation of the surface; points that are not of the robot are left out
+/// @param diagnostics  errors: meshes that are missing, clouds that do not lie on the robot; notes: the fit
+/// @returns  where the rounds ended, of all parameters of the assembled table; empty after an error
+[[nodiscard]] std::vector<double> match_surface(const SurfaceInput& input, Config& config,
+                                                std::vector<Sample>& samples,
+                                                Diagnostics& diagnostics);
+
+}  // namespace kinecal

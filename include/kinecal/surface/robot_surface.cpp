@@ -1,0 +1,252 @@
+// Definitions of robot_surface.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/surface/robot_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "kinecal/files/meshes/read_mesh.hpp"
+#include "kinecal/files/urdf/visuals.hpp"
+#include "kinecal/text/counted.hpp"
+#include "kinecal/text/frame_name.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/printable.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// The triangles of a link, from all its meshes.
+struct LinkTriangles {
+  std::vector<Vector3<double>> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  /// @param visual  its scale and origin
+  void add(const Mesh& mesh, const Visual& visual) {
+    const auto first = static_cast<std::uint32_t>(vertices.size());
+    for (std::size_t v = 0; v < mesh.num_vertices(); ++v) {
+      Vector3<double> p;
+      for (std::size_t k = 0; k < 3; ++k) {
+        p[static_cast<Eigen::Index>(k)] = visual.scale[k] * mesh.vertices[3 * v + k];
+      }
+      vertices.push_back(visual.link_T_visual * p);
+    }
+    const bool mirrors = visual.scale[0] * visual.scale[1] * visual.scale[2] < 0.0;
+    for (std::size_t t = 0; t < mesh.num_triangles(); ++t) {
+      std::array<std::uint32_t, 3> corners{};
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = first + mesh.triangles[3 * t + k];
+      if (mirrors) std::swap(corners[1], corners[2]);
+      triangles.push_back(corners);
+    }
+  }
+};
+
+/// The meshes of links that are needed.
+class SurfaceReader {
+ public:
+  SurfaceReader(const SurfaceSource& source, Diagnostics& diagnostics)
+      : source_(source), diagnostics_(diagnostics) {}
+
+  [[nodiscard]] RobotSurface read(const std::vector<Visual>& all, const char* element) {
+    std::vector<std::string> names;  // of links, in order of the URDF
+    std::map<std::string, LinkTriangles> links;
+    for (const Visual& visual : all) {
+      if (visual.shape != VisualShape::mesh || !is_needed(visual.link)) continue;
+      if (links.try_emplace(visual.link).second) names.push_back(visual.link);
+      if (const Mesh* mesh = mesh_of(visual)) links[visual.link].add(*mesh, visual);
+    }
+    report_without(names, element);
+    std::vector<SurfaceLink> made;
+    for (const std::string& name : names) {
+      const LinkTriangles& of = links[name];
+      if (of.triangles.empty()) continue;  // its mesh is reported
+      SurfaceLink link{name, TriangleTree(of.vertices, of.triangles)};
+      if (is_good(link)) made.push_back(std::move(link));
+    }
+    report_facts(made);
+    return RobotSurface(std::move(made));
+  }
+
+ private:
+  [[nodiscard]] bool is_needed(const std::string& link) const {
+    const auto& needed = source_.links;
+    return needed.empty() || std::any_of(needed.begin(), needed.end(), [&](const auto& name) {
+             return same_frame(name, link);
+           });
+  }
+
+  /// A mesh, read once; nullptr, and an error, if that fails.
+  [[nodiscard]] const Mesh* mesh_of(const Visual& visual) {
+    const auto [known, is_new] = meshes_.try_emplace(visual.mesh);
+    if (is_new) {
+      try {
+        // A tree copes with them; a mesh beyond is simplified as for viewers.
+        constexpr MeshLimits kLimits{.triangles = 2000000, .bytes = std::uintmax_t{1} << 30};
+        known->second = read_mesh(find_mesh(visual.mesh, source_.places), kLimits);
+      } catch (const MeshError& error) {
+        diagnostics_.error(
+            {source_.urdf, 0},
+            fmt::format("link '{}': mesh '{}' {}; the surface of the robot needs it: mend its "
+                        "name in the URDF, or list the links to use under 'links'",
+                        printable(visual.link), printable(visual.mesh), error.what()));
+      }
+    }
+    return known->second.triangles.empty() ? nullptr : &known->second;
+  }
+
+  void report_without(const std::vector<std::string>& names, const char* element) {
+    for (const std::string& link : source_.links) {
+      const auto has = [&](const std::string& name) { return same_frame(name, link); };
+      if (std::any_of(names.begin(), names.end(), has)) continue;
+      diagnostics_.error(source_.place,
+                         fmt::format("link '{}' has no mesh in a <{}> of {}{}", link, element,
+                                     source_.urdf, did_you_mean(link, names)));
+    }
+    if (names.empty() && source_.links.empty()) {
+      diagnostics_.error(source_.place,
+                         fmt::format("no link has a mesh in a <{}> of {}; the surface of the robot "
+                                     "is made of meshes",
+                                     element, source_.urdf));
+    }
+  }
+
+  /// False, and an error, if the size of a link is impossible.
+  [[nodiscard]] bool is_good(const SurfaceLink& link) {
+    constexpr double kLargest = 5.0, kSmallest = 0.005;
+    const SurfaceFacts& facts = link.tree.facts();
+    const double size = (facts.high - facts.low).maxCoeff();
+    std::string why;
+    if (facts.triangles == 0) {
+      why = "all triangles of its mesh are without area";
+    } else if (size > kLargest) {
+      why = fmt::format("its mesh is {:.4g} m long; is it in millimetres?  Then write "
+                        "scale=\"0.001 0.001 0.001\" in its <mesh>",
+                        size);
+    } else if (size < kSmallest) {
+      why = fmt::format("its mesh is {:.3g} mm long; is its scale wrong?  Vertices are in metres",
+                        1e3 * size);
+    }
+    if (!why.empty()) diagnostics_.error({source_.urdf, 0}, "link '" + link.name + "': " + why);
+    return why.empty();
+  }
+
+  void report_facts(const std::vector<SurfaceLink>& links) {
+    std::size_t triangles = 0, without_area = 0;
+    std::vector<std::string> open, inside_out;
+    for (const SurfaceLink& link : links) {
+      const SurfaceFacts& facts = link.tree.facts();
+      triangles += facts.triangles;
+      without_area += facts.without_area;
+      if (!facts.closed) open.push_back(link.name);
+      if (facts.closed && facts.volume < 0.0) inside_out.push_back(link.name);
+    }
+    std::string text = fmt::format("the surface of the robot is {} of {}",
+                                   counted(triangles, "triangle"), counted(links.size(), "link"));
+    if (without_area > 0) text += fmt::format("; {} without area left out", without_area);
+    if (!open.empty()) text += "; not closed: " + fmt::format("{}", fmt::join(open, ", "));
+    if (!inside_out.empty()) {
+      text += "; inside out: " + fmt::format("{}", fmt::join(inside_out, ", "));
+    }
+    if (!links.empty()) diagnostics_.note({source_.urdf, 0}, text);
+  }
+
+  const SurfaceSource& source_;
+  Diagnostics& diagnostics_;
+  std::map<std::string, Mesh> meshes_;  ///< by name in the URDF
+};
+
+}  // namespace
+}  // namespace detail
+
+int RobotSurface::find(const std::string& link) const {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (same_frame(links_[i].name, link)) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+SurfaceHit RobotSurface::closest(std::span<const Pose<double>> base_T_links,
+                                 const Vector3<double>& p_base, double bound,
+                                 const SurfaceHit& last) const {
+  SurfaceHit hit;
+  SurfacePoint best;
+  const auto in_link = [&](std::size_t i) {
+    return Vector3<double>(base_T_links[i].rotation.transpose() *
+                           (p_base - base_T_links[i].translation));
+  };
+  const auto search = [&](std::size_t i, int guess) {
+    const auto found =
+        links_[i].tree.closest(in_link(i), std::min(bound, best.distance), guess);
+    if (!found || found->distance >= best.distance) return;
+    best = *found;
+    hit.link = static_cast<int>(i);
+  };
+  if (last.link >= 0) search(static_cast<std::size_t>(last.link), last.triangle);
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (static_cast<int>(i) == last.link) continue;
+    const TriangleTree& tree = links_[i].tree;
+    const double away = (base_T_links[i] * tree.center() - p_base).norm() - tree.radius();
+    if (away < std::min(bound, best.distance)) search(i, -1);
+  }
+  if (hit.link < 0) return hit;
+  const Pose<double>& base_T_link = base_T_links[static_cast<std::size_t>(hit.link)];
+  hit.triangle = best.triangle;
+  hit.point = best.point;
+  hit.distance = best.distance;
+  hit.face = base_T_link.rotation * best.normal;
+  const Vector3<double> off = p_base - base_T_link * best.point;
+  constexpr double kCoincide = 1e-9;  // metres
+  const bool is_behind = off.dot(hit.face) < 0.0;
+  hit.normal = off.norm() < kCoincide ? hit.face
+                                      : Vector3<double>((is_behind ? -1.0 : 1.0) * off.normalized());
+  return hit;
+}
+
+SurfaceHit RobotSurface::cast(std::span<const Pose<double>> base_T_links,
+                              const Vector3<double>& origin,
+                              const Vector3<double>& direction) const {
+  SurfaceHit hit;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Pose<double> link_T_base = base_T_links[i].inverse();
+    const auto found = links_[i].tree.cast(
+        link_T_base * origin, Vector3<double>(link_T_base.rotation * direction), hit.distance);
+    if (!found) continue;
+    hit.link = static_cast<int>(i);
+    hit.triangle = found->triangle;
+    hit.point = found->point;
+    hit.distance = found->distance;
+    hit.normal = hit.face = base_T_links[i].rotation * found->normal;
+  }
+  return hit;
+}
+
+RobotSurface read_surface(const std::string& text, const SurfaceSource& source,
+                          Diagnostics& diagnostics) {
+  const auto of = [&](ShapeElement element) {
+    return visuals(text, source.urdf, diagnostics, element);
+  };
+  std::vector<Visual> all;
+  const char* element = "visual";
+  if (source.geometry != SurfaceGeometry::collision) all = of(ShapeElement::visual);
+  const bool has_mesh = std::any_of(all.begin(), all.end(), [](const Visual& visual) {
+    return visual.shape == VisualShape::mesh;
+  });
+  if (source.geometry == SurfaceGeometry::collision ||
+      (source.geometry == SurfaceGeometry::automatic && !has_mesh)) {
+    std::vector<Visual> others = of(ShapeElement::collision);
+    const bool have = std::any_of(others.begin(), others.end(), [](const Visual& visual) {
+      return visual.shape == VisualShape::mesh;
+    });
+    if (have || source.geometry == SurfaceGeometry::collision) {
+      element = "collision";
+      all = std::move(others);
+    }
+  }
+  return detail::SurfaceReader(source, diagnostics).read(all, element);
+}
+
+}  // namespace kinecal

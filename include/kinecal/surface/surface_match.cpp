@@ -1,0 +1,150 @@
+// Definitions of surface_match.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/surface/surface_match.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "kinecal/evaluation/parallel.hpp"
+#include "kinecal/text/frame_name.hpp"
+#include "kinecal/trust/uncertainty/feature_places.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+[[nodiscard]] int sensor_number(const AnyProblem& problem, const std::string& name) {
+  const std::vector<MountedSensor>& all = problem.sensors();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const MountedSensor& sensor) {
+    return sensor.mount().name == name;
+  });
+  if (found == all.end()) throw std::invalid_argument("no sensor '" + name + "' in the problem");
+  return static_cast<int>(found - all.begin());
+}
+
+/// The chains to the links of a surface, posed by the parameters.
+class PosedLinks {
+ public:
+  PosedLinks(const RobotSurface& surface, const MountedSensor& robot, ParameterValues values) {
+    for (const SurfaceLink& link : surface.links()) {
+      const auto& chains = robot.chains();
+      const auto chain = std::find_if(chains.begin(), chains.end(), [&](const SampledChain& one) {
+        return same_frame(one.chain().tip, link.name);
+      });
+      if (chain == chains.end()) {
+        throw std::invalid_argument("sensor '" + robot.mount().name + "' has no link '" +
+                                    link.name + "'");
+      }
+      chains_.push_back({&*chain, corrections_for(chain->parameters(), values)});
+    }
+  }
+  [[nodiscard]] std::vector<Pose<double>> in(const Sample& sample) const {
+    std::vector<Pose<double>> poses;
+    for (const auto& [chain, corrections] : chains_) {
+      poses.push_back(chain->tip(sample, corrections));
+    }
+    return poses;
+  }
+
+ private:
+  std::vector<std::pair<const SampledChain*, Corrections<double>>> chains_;
+};
+
+}  // namespace
+}  // namespace detail
+
+std::vector<Pose<double>> link_poses(const RobotSurface& surface, const SurfacePair& pair,
+                                     const AnyProblem& problem, ParameterValues values,
+                                     const Sample& sample) {
+  const int robot = detail::sensor_number(problem, pair.robot);
+  return detail::PosedLinks(surface, problem.sensors()[static_cast<std::size_t>(robot)], values)
+      .in(sample);
+}
+
+void associate(const RobotSurface& surface, const SurfacePair& pair, const AnyProblem& problem,
+               ParameterValues values, std::span<const Sample> samples, double bound, int threads,
+               SurfaceHits& hits) {
+  const int camera = detail::sensor_number(problem, pair.camera);
+  const detail::PosedLinks links(
+      surface,
+      problem.sensors()[static_cast<std::size_t>(detail::sensor_number(problem, pair.robot))],
+      values);
+  const FeaturePlaces places(problem, values);
+  hits.resize(samples.size());
+  const auto match = [&](int s, int) {
+    const Sample& sample = samples[static_cast<std::size_t>(s)];
+    std::vector<SurfaceHit>& of_sample = hits[static_cast<std::size_t>(s)];
+    const Observation* seen = sample.observation(pair.camera);
+    if (seen == nullptr || seen->features.empty()) return of_sample.clear();
+    const std::vector<Pose<double>> base_T_links = links.in(sample);
+    const std::vector<PlacedFeature> points = places.placed(camera, *seen, sample);
+    of_sample.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!points[i].seen) {
+        of_sample[i] = {};
+        continue;
+      }
+      of_sample[i] = surface.closest(base_T_links, points[i].point, bound, of_sample[i]);
+    }
+  };
+  detail::for_each_piece(static_cast<int>(samples.size()), detail::number_of_threads(threads),
+                         match);
+}
+
+std::vector<Sample> with_surface(const RobotSurface& surface, const SurfacePair& pair,
+                                 std::span<const Sample> samples, const SurfaceHits& hits,
+                                 double gate) {
+  std::vector<Sample> matched(samples.begin(), samples.end());
+  for (std::size_t s = 0; s < matched.size(); ++s) {
+    std::vector<Observation>& all = matched[s].observations;
+    std::erase_if(all, [&](const Observation& one) { return one.sensor == pair.robot; });
+    const auto seen = std::find_if(all.begin(), all.end(), [&](const Observation& one) {
+      return one.sensor == pair.camera;
+    });
+    if (seen == all.end()) continue;
+    std::vector<std::vector<std::size_t>> by_link(surface.links().size());  // chains change seldom
+    for (std::size_t i = 0; i < hits[s].size(); ++i) {
+      const SurfaceHit& hit = hits[s][i];
+      if (hit.link < 0 || hit.distance > gate) continue;
+      by_link[static_cast<std::size_t>(hit.link)].push_back(i);
+    }
+    std::vector<Feature> points;
+    Observation of_robot{.sensor = pair.robot, .features = {}};
+    for (std::size_t link = 0; link < by_link.size(); ++link) {
+      for (const std::size_t i : by_link[link]) {
+        const SurfaceHit& hit = hits[s][i];
+        Feature& on_link = of_robot.features.emplace_back();
+        on_link.frame = surface.links()[link].name;
+        on_link.point = hit.point;
+        on_link.id = seen->features[i].id;
+        on_link.conditions = {
+            {"nx", hit.normal.x()}, {"ny", hit.normal.y()}, {"nz", hit.normal.z()}};
+        points.push_back(std::move(seen->features[i]));
+      }
+    }
+    seen->features = std::move(points);
+    all.push_back(std::move(of_robot));
+  }
+  return matched;
+}
+
+std::vector<Sample> with_fewer_points(std::span<const Sample> samples, const std::string& sensor,
+                                      int points) {
+  std::vector<Sample> fewer;
+  for (const Sample& sample : samples) {
+    Sample& some = fewer.emplace_back(sample);
+    for (Observation& seen : some.observations) {
+      const std::size_t all = seen.features.size(), most = static_cast<std::size_t>(points);
+      if (seen.sensor != sensor || all <= most) continue;
+      std::vector<Feature> kept;
+      for (std::size_t i = 0; i < most; ++i) kept.push_back(seen.features[i * all / most]);
+      seen.features = std::move(kept);
+    }
+  }
+  return fewer;
+}
+
+}  // namespace kinecal

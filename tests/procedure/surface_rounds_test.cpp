@@ -1,0 +1,228 @@
+#include "kinecal/procedure/surface_rounds.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <filesystem>
+
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/samples/read_samples.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
+#include "support/data.hpp"
+#include "support/mesh_robot.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// The start of the tests: 6 cm and 6 degrees off true_camera().
+constexpr const char* kStart = "x: -1.26, y: -0.63, z: 0.79, roll: -1.62, pitch: 0.03, yaw: -1.24";
+
+Pose<double> camera_in(const ParameterTable& table) {
+  const auto value = [&](const char* axis) {
+    return table["camera_joint_" + std::string(axis)].value;
+  };
+  return {exp(Vector3<double>(value("a"), value("b"), value("c"))),
+          Vector3<double>(value("x"), value("y"), value("z"))};
+}
+
+double distance_of(const Pose<double>& one, const Pose<double>& other) {
+  return (one.translation - other.translation).norm();
+}
+
+double angle_of(const Pose<double>& one, const Pose<double>& other) {
+  return Eigen::AngleAxisd(one.rotation.transpose() * other.rotation).angle();
+}
+
+/// An arm with meshes in a folder, and clouds of it.
+class SurfaceRoundsOfAnArm : public test::FolderTest {
+ protected:
+  SurfaceRoundsOfAnArm() { test::write_meshes(folder_); }
+
+  CalibrationSetup setup(const std::string& config, const test::CloudPlan& plan = {}) {
+    Diagnostics found;
+    CalibrationSetup setup{.robot = parse_urdf(urdf_, "arm.urdf"),
+                           .config = parse_config(config, "calibrate.yaml", found),
+                           .urdf_text = urdf_,
+                           .urdf = (folder_ / "arm.urdf").string()};
+    EXPECT_THAT(found.errors, IsEmpty());
+    setup.samples = test::mesh_robot_samples(setup.robot, plan);
+    return setup;
+  }
+
+  std::vector<std::string> errors_of(const CalibrationSetup& of) {
+    return prepare(of).diagnostics.errors;
+  }
+
+  std::string urdf_ = test::mesh_robot_urdf();
+};
+
+TEST_F(SurfaceRoundsOfAnArm, FindTheCameraToTheNoise) {
+  const CalibratedRobot calibrated = calibrate_robot(setup(test::mesh_config(kStart), {.noise = 0.001}));
+  ASSERT_TRUE(calibrated.is_usable()) << calibrated.judgement.reasons.front();
+  const Pose<double> found = camera_in(calibrated.result.table);
+  EXPECT_LT(distance_of(found, test::true_camera()), 0.5e-3) << "10 000 points with 1 mm of noise";
+  EXPECT_LT(angle_of(found, test::true_camera()), 0.5e-3);
+}
+
+TEST_F(SurfaceRoundsOfAnArm, AreZeroAtTheTruth) {
+  const CalibratedRobot calibrated = calibrate_robot(setup(test::mesh_config(kStart)));
+  ASSERT_TRUE(calibrated.result.converged);
+  const Pose<double> found = camera_in(calibrated.result.table);
+  EXPECT_LT(distance_of(found, test::true_camera()), 1e-6) << "vertices of files are floats";
+  EXPECT_LT(angle_of(found, test::true_camera()), 1e-6);
+  EXPECT_LT(calibrated.result.steps.back().final_cost, 1e-9);
+}
+
+TEST_F(SurfaceRoundsOfAnArm, FindOffsetsOfJoints) {
+  const CalibratedRobot calibrated =
+      calibrate_robot(setup(test::mesh_config(kStart, "", "lift, elbow"),
+                            {.noise = 0.001, .offsets = {{"lift", 0.02}, {"elbow", -0.03}}}));
+  ASSERT_TRUE(calibrated.is_usable()) << calibrated.judgement.reasons.front();
+  EXPECT_NEAR(calibrated.result.table["lift"].value, 0.02, 1e-3);
+  EXPECT_NEAR(calibrated.result.table["elbow"].value, -0.03, 1e-3);
+  EXPECT_LT(distance_of(camera_in(calibrated.result.table), test::true_camera()), 2e-3);
+}
+
+TEST_F(SurfaceRoundsOfAnArm, NeedNoStart) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    PreparedCalibration prepared = prepare(
+        setup(test::mesh_config(""), {.samples = 4, .noise = 0.001, .background = true, .seed = seed}));
+    ASSERT_THAT(prepared.diagnostics.errors, IsEmpty());
+    EXPECT_THAT(prepared.diagnostics.notes, testing::Contains(HasSubstr("'camera_joint' was searched")));
+    ParameterTable table = prepared.calibration.table;
+    for (int p = 0; p < table.size(); ++p) {
+      table[p].value = prepared.calibration.begin[static_cast<std::size_t>(p)];
+    }
+    EXPECT_LT(distance_of(camera_in(table), test::true_camera()), 3e-3) << "seed " << seed;
+  }
+}
+
+TEST_F(SurfaceRoundsOfAnArm, LeaveTheBackgroundOut) {
+  const PreparedCalibration prepared =
+      prepare(setup(test::mesh_config(kStart), {.noise = 0.001, .background = true}));
+  ASSERT_THAT(prepared.diagnostics.errors, IsEmpty());
+  for (const Sample& sample : prepared.samples) {
+    const Observation& camera = *sample.observation("camera");
+    ASSERT_EQ(camera.features.size(), sample.observation("camera_surface")->features.size());
+    EXPECT_GT(camera.features.size(), 100U);
+    for (const Feature& feature : camera.features) EXPECT_LT(feature.point.z(), 2.2);
+  }
+}
+
+TEST_F(SurfaceRoundsOfAnArm, DoNotDependOnTheNumberOfThreads) {
+  const auto begin_with = [&](int threads) {
+    CalibrationOptions options;
+    options.solving.threads = threads;
+    return prepare(setup(test::mesh_config(""), {.samples = 3, .background = true}), options)
+        .calibration.begin;
+  };
+  EXPECT_EQ(begin_with(1), begin_with(3));
+}
+
+TEST_F(SurfaceRoundsOfAnArm, UseTheLinksThatAreListed) {
+  const PreparedCalibration prepared =
+      prepare(setup(test::mesh_config(kStart, ", link_names: [upper, fore]"), {.noise = 0.001}));
+  ASSERT_THAT(prepared.diagnostics.errors, IsEmpty());
+  for (const Feature& feature : prepared.samples[0].observation("camera_surface")->features) {
+    EXPECT_TRUE(feature.frame == "upper" || feature.frame == "fore");
+  }
+  EXPECT_THAT(errors_of(setup(test::mesh_config(kStart, ", links: [uper]"))),
+              ElementsAre(HasSubstr("no link 'uper' in robot 'arm'; did you mean 'upper'?")));
+}
+
+TEST_F(SurfaceRoundsOfAnArm, RefuseCloudsInMillimetres) {
+  CalibrationSetup of = setup(test::mesh_config(kStart));
+  for (Sample& sample : of.samples) {
+    for (Feature& feature : sample.observations[0].features) feature.point *= 1000.0;
+  }
+  EXPECT_THAT(errors_of(of), ElementsAre(HasSubstr("not in metres (millimetres?)")));
+}
+
+TEST_F(SurfaceRoundsOfAnArm, RefuseCloudsOfSomethingElse) {
+  CalibrationSetup of = setup(test::mesh_config(kStart));
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> along(-0.7, 0.7);
+  for (Sample& sample : of.samples) {
+    for (Feature& feature : sample.observations[0].features) {
+      feature.point = {along(engine), along(engine), 1.5 + along(engine)};
+    }
+  }
+  const std::vector<std::string> errors = errors_of(of);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_THAT(errors[0], HasSubstr("the points do not lie on the robot"));
+}
+
+TEST_F(SurfaceRoundsOfAnArm, RefuseCloudsOfOtherJoints) {
+  CalibrationSetup of = setup(test::mesh_config(""), {.noise = 0.001, .background = true});
+  for (std::size_t s = 0; s < of.samples.size(); ++s) {  // the rows are shifted
+    of.samples[s].observations = setup(test::mesh_config(""), {.background = true, .seed = 77})
+                                     .samples[s]
+                                     .observations;
+  }
+  EXPECT_FALSE([&] {
+    const PreparedCalibration prepared = prepare(of);
+    return prepared.diagnostics.errors.empty() && calibrate_robot(prepared).judgement.verdict == Grade::good;
+  }());
+}
+
+TEST_F(SurfaceRoundsOfAnArm, NameMeshesThatAreMissing) {
+  std::filesystem::remove(folder_ / "fore.stl");
+  EXPECT_THAT(errors_of(setup(test::mesh_config(kStart))),
+              ElementsAre(HasSubstr("link 'fore': mesh 'fore.stl' is not there")));
+}
+
+/// The reference figures of a KUKA Med 7 that a RealSense sees: README of the data set.
+class SurfaceOfMed7 : public testing::TestWithParam<const char*> {
+ protected:
+  static PreparedCalibration prepared(const std::string& config, const std::string& samples,
+                                      const std::vector<int>& some = {}) {
+    const std::filesystem::path folder = test::data_folder() / "med7_mesh";
+    Diagnostics found;
+    CalibrationSetup setup;
+    setup.urdf = (folder / "med7.urdf").string();
+    setup.urdf_text = read_urdf_text(setup.urdf);
+    setup.robot = parse_urdf(setup.urdf_text, setup.urdf);
+    setup.config = config.find('\n') == std::string::npos
+                       ? read_config((folder / config).string(), found)
+                       : parse_config(config, "calibrate.yaml", found);
+    std::vector<Sample> all = read_samples((folder / samples).string(), found);
+    for (const int number : some) setup.samples.push_back(all[static_cast<std::size_t>(number)]);
+    if (some.empty()) setup.samples = std::move(all);
+    return prepare(std::move(setup), {}, std::move(found));
+  }
+
+  static Pose<double> found_by(const PreparedCalibration& of) {
+    ParameterTable table = of.calibration.table;
+    for (int p = 0; p < table.size(); ++p) {
+      table[p].value = of.calibration.begin[static_cast<std::size_t>(p)];
+    }
+    return camera_in(table);
+  }
+
+  static Pose<double> reference() {
+    return {rotation_from_rpy(Vector3<double>(-1.10618, -0.25715, -1.03641)),
+            Vector3<double>(-0.94297, -0.38382, -0.13714)};
+  }
+};
+
+TEST_P(SurfaceOfMed7, ReachesTheReference) {
+  KINECAL_NEEDS_DATA("med7_mesh");
+  const PreparedCalibration of = prepared(GetParam(), "samples_masked.yaml");
+  ASSERT_THAT(of.diagnostics.errors, IsEmpty());
+  EXPECT_THAT(of.diagnostics.notes, testing::Contains(HasSubstr("their cost 0.2951")));
+  EXPECT_LT(distance_of(found_by(of), reference()), 0.5e-3) << "what kinks of the cost move";
+  EXPECT_LT(angle_of(found_by(of), reference()), 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Starts, SurfaceOfMed7,
+                         testing::Values("calibrate.yaml", "calibrate_far.yaml"));
+
+}  // namespace
+}  // namespace kinecal
