@@ -82,6 +82,14 @@ CLI::Option* add_samples(CLI::App& command, std::vector<std::string>& samples) {
       ->type_name("FILE");
 }
 
+void add_mesh_path(CLI::App& command, std::vector<std::string>& paths) {
+  command
+      .add_option("--mesh-path", paths,
+                  "folder of the URDF's packages, or of one of them, in which meshes are; beside "
+                  "ROS_PACKAGE_PATH, AMENT_PREFIX_PATH and the folders above the URDF")
+      ->type_name("DIR");
+}
+
 /// The options that say what is calibrated, from which samples.
 /// @returns  --samples
 CLI::Option* add_input(CLI::App& command, InputOptions& options) {
@@ -93,6 +101,7 @@ CLI::Option* add_input(CLI::App& command, InputOptions& options) {
       ->type_name("FILE");
   CLI::Option* samples = add_samples(command, options.samples);
   add_cameras(command, options.cameras);
+  add_mesh_path(command, options.mesh_paths);
   add_names(command, "--hold", options.hold,
             "parameters that keep their initial values, though the configuration frees them");
   command
@@ -208,14 +217,6 @@ void add_calibrate_log(CLI::App& command, LogOptions& options) {
       ->capture_default_str();
 }
 
-void add_mesh_path(CLI::App& command, std::vector<std::string>& paths) {
-  command
-      .add_option("--mesh-path", paths,
-                  "folder of the URDF's packages, or of one of them, in which meshes are; beside "
-                  "ROS_PACKAGE_PATH, AMENT_PREFIX_PATH and the folders above the URDF")
-      ->type_name("DIR");
-}
-
 void add_calibrate(CLI::App& command, CalibrateOptions& options) {
   options.nothing_free = kinecal::NothingFree::without_lists;
   add_input(command, options)->required();
@@ -247,7 +248,6 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
                   "write the robot before and after, and what was measured, for Foxglove and "
                   "Lichtblick (.mcap), whatever the verdict")
       ->type_name("FILE");
-  add_mesh_path(command, options.mesh_paths);
   command
       .add_option("--exclude", options.exclude,
                   "leave out these samples: numbers from 1, in the order of the files")

@@ -56,7 +56,13 @@ MissingSensors missing_sensors(const StepConfig& step, std::span<const Sample> s
 
 std::string sentence_of(const MissingSensors& missing) {
   std::vector<std::string> names;
-  for (const ModelConfig* model : missing.models) names.push_back(model->name);
+  for (const ModelConfig* model : missing.models) {
+    if (!model->is_surface) names.push_back(model->name);
+  }
+  if (names.empty()) {
+    return "chain3d_to_mesh: the points are not associated with the surface of the robot; 'kinecal "
+           "calibrate', 'check' and 'identify' do that, with the meshes of the URDF";
+  }
   std::string text = fmt::format(
       "{} {}: no sample has {}", names.size() == 1 ? "model" : "models", quoted_list(names),
       names.size() == 1 ? "a sensor of that name" : "sensors of these names");

@@ -92,6 +92,7 @@ void leave_open(PreparedCalibration& prepared, Search search, bool is_proposed) 
   (void)kinecal::match_surface(input, poses, prepared.samples, prepared.diagnostics);
   for (std::size_t s = 0; s < poses.steps.size(); ++s) {
     prepared.config->steps[s].models = poses.steps[s].models;  // they know the links now
+    prepared.config->steps[s].error_blocks = poses.steps[s].error_blocks;
   }
   return {};
 }
@@ -336,6 +337,9 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
   if (!is_good()) return prepared;
   is_open ? detail::leave_open(prepared, options.search, is_proposed)
           : detail::assemble(prepared, options.exclude);
+  if (!begin.empty()) {  // the rounds have searched
+    for (CalibrationStep& step : prepared.calibration.steps) step.unknown_frames.clear();
+  }
   prepared.calibration.begin = std::move(begin);
   return prepared;
 }

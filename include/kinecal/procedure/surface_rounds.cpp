@@ -38,6 +38,7 @@ constexpr double kNarrowest = 0.01;  ///< metres, of a gate without a loss
 constexpr double kScales = 20.0;     ///< scales of a loss, of the gate with one
 constexpr double kOnRobot = 0.02;    ///< metres: a point within lies on the robot
 constexpr int kFewPoints = 400;      ///< of a sample, in coarse rounds
+constexpr int kFewestPoints = 120;   ///< of a sample, where ends of rounds are compared
 
 /// A block that compares a camera with the surface of the robot.
 struct SurfaceBlock {
@@ -442,50 +443,74 @@ class SurfaceFit {
   /// @param unknown  frames whose pose may be searched for
   [[nodiscard]] RoundState run(std::span<const Sample> samples, const Eigen::VectorXd& start,
                                std::span<const UnknownFrame> unknown, Diagnostics& diagnostics) {
-    std::vector<Sample> few(samples.begin(), samples.end());
-    for (const SurfaceBlock& block : blocks_) {
-      few = with_fewer_points(few, block.pair.camera, kFewPoints);
-    }
+    const std::vector<Sample> few = thinned(samples, kFewPoints);
     const bool is_lost = std::any_of(unknown.begin(), unknown.end(),
                                      [](const UnknownFrame& frame) { return !frame.has_guess; });
     constexpr double kGood = 0.6;  // of quality
     std::optional<RoundState> best;
-    if (!is_lost) best = coarse(few, start, kWidest);
+    if (!is_lost) best = coarse(few, start, kSteady);
     if (!best || contrast(few, *best) < kGood) {
+      const std::vector<Sample> fewest = thinned(few, kFewestPoints);
+      double least = best ? ranked(fewest, best->values) : std::numeric_limits<double>::infinity();
+      std::optional<Eigen::VectorXd> found;
       for (const Eigen::VectorXd& values : searched(few, start, unknown)) {
-        RoundState found = coarse(few, values, kWidest / 3.0);
-        if (!best || ranked(few, found) < ranked(few, *best)) best = std::move(found);
+        const RoundState end = coarse(fewest, values, kQuick);
+        const double rank = ranked(fewest, end.values);
+        if (rank >= least) continue;
+        least = rank;
+        found = end.values;
       }
+      if (found) best = coarse(few, *found, {.gates = {0.06, 0.03}, .rounds = 3});
       if (is_lost && best) {
         diagnostics.notes.push_back("the pose of '" + unknown.front().name +
                                     "' was searched for: the surface of the robot in the clouds "
                                     "gives it");
       }
     }
-    if (!best) best = coarse(few, start, kWidest);
-    return fine(samples, best->values);
+    if (!best) best = coarse(few, start, kSteady);
+    const RoundState near = fine(few, best->values);
+    return fine(samples, near.values);
   }
 
   /// The gate beyond which points of a block do not count in the end, metres.
   [[nodiscard]] double gate() const { return gate_; }
 
  private:
-  [[nodiscard]] RoundState coarse(std::span<const Sample> samples, Eigen::VectorXd values,
-                                  double widest) const {
-    constexpr double kLast = 0.03, kFactor = 0.6, kHuber = 0.1;
-    RoundState state;
-    for (double gate = widest;; gate = std::max(kLast, kFactor * gate)) {
-      state = rounds_.run({.gate = gate, .huber = kHuber * gate, .rounds = 3, .tolerance = 1e-3},
-                          samples, values);
-      values = state.values;
-      if (gate <= kLast) return state;
+  /// How gates shrink.
+  struct Shrinking {
+    std::vector<double> gates;  ///< metres
+    int rounds = 3;             ///< with each, at most
+  };
+  inline static const Shrinking kSteady{{kWidest, 0.18, 0.11, 0.065, 0.04, 0.03}, 3};
+  inline static const Shrinking kQuick{{0.2, 0.1, 0.05, 0.03}, 2};
+
+  [[nodiscard]] std::vector<Sample> thinned(std::span<const Sample> samples, int points) const {
+    std::vector<Sample> few(samples.begin(), samples.end());
+    for (const SurfaceBlock& block : blocks_) {
+      few = with_fewer_points(few, block.pair.camera, points);
     }
+    return few;
+  }
+
+  [[nodiscard]] RoundState coarse(std::span<const Sample> samples, const Eigen::VectorXd& values,
+                                  const Shrinking& shrinking) const {
+    constexpr double kHuber = 0.1;  // of the gate
+    RoundState state{.values = values};
+    for (const double gate : shrinking.gates) {
+      state = rounds_.run({.gate = gate,
+                           .huber = kHuber * gate,
+                           .rounds = shrinking.rounds,
+                           .tolerance = 1e-3},
+                          samples, state.values);
+    }
+    return state;
   }
 
   /// A cost by which ends of rounds are compared.
-  [[nodiscard]] double ranked(std::span<const Sample> samples, const RoundState& state) const {
+  [[nodiscard]] double ranked(std::span<const Sample> samples,
+                              const Eigen::VectorXd& values) const {
     return rounds_
-        .run({.gate = 0.1, .huber = 0.01, .rounds = 0, .only_front = true}, samples, state.values)
+        .run({.gate = 0.1, .huber = 0.01, .rounds = 0, .only_front = true}, samples, values)
         .cost;
   }
 
@@ -594,6 +619,23 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate, c
       1e3 * median_of(quality.distances));
   if (type != LossType::none) text += fmt::format(", their cost {:.6f}", cost);
   diagnostics.note(of.place, text);
+}
+
+/// Gives a block whose loss is in metres the noise that its points show, and the same loss in sigmas.
+void keep_loss(const std::string& name, const SurfaceHits& hits, double gate, StepConfig& step) {
+  BlockConfig& block = *std::find_if(step.error_blocks.begin(), step.error_blocks.end(),
+                                     [&](const BlockConfig& one) { return one.name == name; });
+  if (block.loss.type == "none" || block.sigma) return;
+  std::vector<double> near;
+  for (const auto& of_sample : hits) {
+    for (const SurfaceHit& hit : of_sample) {
+      if (hit.distance <= gate) near.push_back(hit.distance);
+    }
+  }
+  if (near.empty()) return;
+  constexpr double kOfMedian = 1.4826;
+  block.sigma = std::max(1e-6, kOfMedian * median_of(std::move(near)));
+  block.loss.scale /= *block.sigma;
 }
 
 /// Doubts a camera that stands inside of a link.
@@ -736,6 +778,9 @@ std::vector<double> match_surface(const SurfaceInput& input, Config& config,
       detail::check_camera(blocks[b], of, *problem, matched, values, diagnostics);
     }
     matched = rounds.matched(matched, hits, fit.gate());
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      detail::keep_loss(blocks[b].name, hits[b], fit.gate(), config.steps[s]);
+    }
   }
   if (diagnostics.errors.size() > before) return {};
   samples = std::move(matched);

@@ -323,7 +323,7 @@ class PoseSearcher {
   /// Goes downhill: Gauss-Newton steps with weights that fall with the distance.
   void refine(Candidate& one) const {
     double limit = kFar;
-    for (int round = 0; round < 15; ++round, limit = std::max(0.08, 0.85 * limit)) {
+    for (int round = 0; round < 25; ++round, limit = std::max(0.05, 0.85 * limit)) {
       Eigen::Matrix<double, 6, 6> hessian = Eigen::Matrix<double, 6, 6>::Zero();
       Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
       const Vector3<double> pivot = one.pose.translation;
@@ -340,7 +340,7 @@ class PoseSearcher {
           gradient += weight * d * row;
         }
       }
-      hessian.diagonal().array() += 1e-3 * hessian.trace() + 1e-9;
+      hessian.diagonal().array() += 1e-5 * hessian.trace() + 1e-9;
       const Eigen::Matrix<double, 6, 1> step = hessian.ldlt().solve(-gradient);
       const Vector3<double> turn = step.tail<3>();
       const double angle = turn.norm();

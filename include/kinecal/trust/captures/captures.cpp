@@ -20,11 +20,19 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-// Samples with poses of their own that are far off as a whole.
+// Samples that are judged as a whole: those with poses of their own, and clouds on the surface of the robot.
 //
-// Such a sample hardly moves the fit of the others; and single corners at the border of a wide lens are often off by
-// many times the noise, so that a fit without these views would be a worse one.  So a sample is judged by the root mean square of
-// its residuals.
+// A sample with a pose of its own hardly moves the fit of the others; and single corners at the border of a wide lens are
+// often off by many times the noise, so that a fit without these views would be a worse one.  Of the thousands of points of a
+// cloud some are always far off: a cable, an edge.  So such a sample is judged by the root mean square of its residuals.
+
+[[nodiscard]] bool judges_wholes(const AnyProblem& problem) {
+  bool clouds = false;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    clouds = clouds || problem.term(t).options.type == PointToMesh::kType;
+  }
+  return clouds || !problem.sample_poses().empty();
+}
 
 /// True for each sample whose residuals are four times those of a typical one.
 /// @param sigma  noise of a weighted residual, by term
@@ -36,7 +44,10 @@ namespace {
   for (const RowBlock& block : fit.blocks) {
     const auto s = static_cast<std::size_t>(block.sample);
     const double noise = std::max(kRounding, sigma[static_cast<std::size_t>(block.term)]);
-    sum[s] += fit.residual.segment(block.first, block.size).squaredNorm() / (noise * noise);
+    sum[s] += fit.residual.segment(block.first, block.size)
+                  .cwiseAbs2()
+                  .dot(fit.loss.segment(block.first, block.size)) /
+              (noise * noise);
     left[s] += static_cast<double>(block.size) - fit.used.segment(block.first, block.size).sum();
   }
   for (std::size_t s = 0; s < samples; ++s) {
@@ -102,7 +113,7 @@ class CaptureSearch {
   }
 
   [[nodiscard]] std::vector<CaptureError> find() {
-    if (!problem_.sample_poses().empty()) {
+    if (judges_wholes(problem_)) {
       fit_without(bad_);
       mark(Tail::as_seen);
       bad_ = far_samples(problem_, fit_, sigma_);
