@@ -138,7 +138,9 @@ void read_block_weighting(ConfigMap& map, BlockConfig& block) {
       surface.links.push_back(*name);
     }
   }
-  surface.geometry = read_choice(map, "geometry", "", {"visual", "collision"});
+  if (map.find("geometry") != nullptr) {
+    surface.geometry = read_choice(map, "geometry", "visual", {"visual", "collision"});
+  }
   surface.points = map.count("points", surface.points);
   if (surface.points < 1) map.error(block.place, "points is less than 1");
   return surface;
