@@ -38,7 +38,15 @@ namespace {
 /// @throws InputError  if options do not go together
 void check_options(const DetectOptions& options) {
   if (options.images.empty() && options.bags.empty()) {
-    throw InputError("give photographs (--images and --frame) or recordings (--bag)");
+    throw InputError("give photographs (--images and --frame), masks or recordings (--bag)");
+  }
+  if (options.config.empty() == options.masks.empty()) {
+    throw InputError(options.masks.empty()
+                         ? "what to look for is missing: a capture.yaml, or --masks"
+                         : "--masks needs no capture.yaml");
+  }
+  if (!options.poses.empty() && options.images.empty()) {
+    throw InputError("--poses has the joints of --images or --masks");
   }
   if (!options.images.empty() && options.frame.empty()) {
     throw InputError("photographs need the name of the camera's frame: --frame");
@@ -176,7 +184,16 @@ DetectionInput read_task(const DetectOptions& options, Diagnostics& diagnostics)
   DetectionInput task;
   task.frame = options.frame;
   task.links = {options.board_link, options.camera_link};
-  task.config = read_capture_config(options.config, diagnostics);
+  if (options.masks.empty()) {
+    task.config = read_capture_config(options.config, diagnostics);
+  } else {
+    task.config.finders.push_back({.name = "masks",
+                                   .type = "MaskFinder",
+                                   .topic = "",
+                                   .camera_info = "",
+                                   .settings = MaskFinder{},
+                                   .place = {}});
+  }
   if (!options.urdf.empty()) {
     task.robot = read_urdf(options.urdf);
     check_links(options, *task.robot, diagnostics);
@@ -240,7 +257,9 @@ void write(const DetectOptions& options, const std::vector<Sample>& samples) {
 
 }  // namespace
 
-int detect(const DetectOptions& options) {
+int detect(const DetectOptions& given) {
+  DetectOptions options = given;
+  if (!options.masks.empty()) options.images = options.masks;
   check_options(options);
   std::vector<std::string> inputs = {options.config, options.poses, options.columns, options.camera,
                                      options.urdf};

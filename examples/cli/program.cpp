@@ -582,21 +582,28 @@ void add_plan(CLI::App& command, PlanOptions& options) {
 
 void add_detect(CLI::App& command, DetectOptions& options) {
   command
-      .add_option("config", options.config, "what to look for: robot_calibration's capture.yaml")
-      ->required()
+      .add_option("config", options.config,
+                  "what to look for: robot_calibration's capture.yaml; not with --masks")
       ->type_name("FILE");
   CLI::Option* images =
       command.add_option("--images", options.images, "folder of photographs: PNG, JPEG, BMP, TIFF")
           ->type_name("DIR");
+  command
+      .add_option(
+          "--masks", options.masks,
+          "folder of images in which some program has marked the robot: 255 where it is, else "
+          "0; their edges are the features")
+      ->type_name("DIR")
+      ->excludes(images);
   CLI::Option* poses =
       command
           .add_option(
               "--poses", options.poses,
-              "table of joint positions for --images, radians and metres: a column for each "
+              "table of joint positions for --images or --masks, radians and metres: a column for "
+              "each "
               "joint, and 'image' for the file's name; without it, the photographs are of a camera "
               "alone")
           ->type_name("FILE");
-  poses->needs(images);
   command.add_option("--columns", options.columns, "what the table's columns mean, as for convert")
       ->needs(poses)
       ->type_name("FILE");

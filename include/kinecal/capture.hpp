@@ -28,6 +28,7 @@
 #include "kinecal/capture/finders/led_finder.hpp"
 #include "kinecal/capture/finders/led_search.hpp"
 #include "kinecal/capture/finders/light_blob.hpp"
+#include "kinecal/capture/finders/mask_finder.hpp"
 #include "kinecal/capture/finders/plane_finder.hpp"
 #include "kinecal/capture/finders/plane_search.hpp"
 #include "kinecal/capture/finders/random_planes.hpp"

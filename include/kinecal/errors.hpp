@@ -12,6 +12,7 @@
 #include "kinecal/errors/point_distance.hpp"
 #include "kinecal/errors/point_to_line.hpp"
 #include "kinecal/errors/point_to_mesh.hpp"
+#include "kinecal/errors/point_to_outline.hpp"
 #include "kinecal/errors/point_to_pixel.hpp"
 #include "kinecal/errors/point_to_plane.hpp"
 #include "kinecal/errors/point_to_point.hpp"

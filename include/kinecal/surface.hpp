@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/surface/outline.hpp"
 #include "kinecal/surface/pose_search.hpp"
 #include "kinecal/surface/robot_surface.hpp"
 #include "kinecal/surface/surface_match.hpp"

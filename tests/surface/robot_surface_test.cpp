@@ -78,13 +78,15 @@ TEST(RobotSurface, NormalsAreTheGradientOfTheDistance) {
       return surface.closest(test::mesh_robot_poses(robot, q), at);
     };
     const SurfaceHit hit = distance(0.0, p);
-    constexpr double kStep = 1e-5, kTolerance = 2e-3;  // floats choose, so distances have kinks of 1e-8
-    const double sign = hit.normal.dot(hit.face) >= 0.0 &&
-                                hit.normal.dot(p - test::mesh_robot_poses(robot, kPosition)
-                                                       [static_cast<std::size_t>(hit.link)] *
-                                                       hit.point) < 0.0
-                            ? -1.0
-                            : 1.0;
+    constexpr double kStep = 1e-5,
+                     kTolerance = 2e-3;  // floats choose, so distances have kinks of 1e-8
+    const double sign =
+        hit.normal.dot(hit.face) >= 0.0 &&
+                hit.normal.dot(p - test::mesh_robot_poses(
+                                       robot, kPosition)[static_cast<std::size_t>(hit.link)] *
+                                       hit.point) < 0.0
+            ? -1.0
+            : 1.0;
     for (Eigen::Index k = 0; k < 3; ++k) {
       const Vector3<double> step = kStep * Vector3<double>::Unit(k);
       const double difference =
@@ -95,8 +97,8 @@ TEST(RobotSurface, NormalsAreTheGradientOfTheDistance) {
     const auto at = [&](double lift) {
       std::map<std::string, double> q = kPosition;
       q["lift"] += lift;
-      return Vector3<double>(
-          test::mesh_robot_poses(robot, q)[static_cast<std::size_t>(hit.link)] * hit.point);
+      return Vector3<double>(test::mesh_robot_poses(robot, q)[static_cast<std::size_t>(hit.link)] *
+                             hit.point);
     };
     const double of_block = hit.normal.dot(at(-kStep) - at(kStep)) / (2.0 * kStep);
     const double difference =

@@ -8,6 +8,7 @@
 #include "kinecal/errors/point_distance.hpp"
 #include "kinecal/errors/point_to_line.hpp"
 #include "kinecal/errors/point_to_mesh.hpp"
+#include "kinecal/errors/point_to_outline.hpp"
 #include "kinecal/errors/point_to_pixel.hpp"
 #include "kinecal/errors/point_to_plane.hpp"
 #include "kinecal/errors/point_to_point.hpp"
@@ -21,6 +22,6 @@ namespace kinecal {
 /// An error block of a built-in type.
 using BuiltInBlock =
     std::variant<PointToPoint, PointToPixel, PointToPlane, PlaneToPlane, PointDistance, PointToLine,
-                 PointToSphere, PoseToPose, RayToRay, PointToRay, PointToMesh>;
+                 PointToSphere, PoseToPose, RayToRay, PointToRay, PointToMesh, PointToOutline>;
 
 }  // namespace kinecal

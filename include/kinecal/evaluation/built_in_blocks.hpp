@@ -16,7 +16,8 @@
   storage template class BlockTerm<PointToLine, Packet>;   \
   storage template class BlockTerm<PointToSphere, Packet>; \
   storage template class BlockTerm<PointToRay, Packet>;    \
-  storage template class BlockTerm<PointToMesh, Packet>
+  storage template class BlockTerm<PointToMesh, Packet>;   \
+  storage template class BlockTerm<PointToOutline, Packet>
 
 namespace kinecal::detail {
 KINECAL_BLOCK_CODE(extern);

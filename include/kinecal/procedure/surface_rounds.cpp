@@ -83,14 +83,13 @@ class SurfaceResolver {
     if (const auto known = surfaces_.find(key); known != surfaces_.end()) {
       resolved.surface = known->second;
     } else {
-      resolved.surface = read_surface(
-          input_.urdf_text,
-          {input_.urdf, mesh_places(input_.urdf, input_.mesh_paths),
-           of.geometry == "visual"      ? SurfaceGeometry::visual
-           : of.geometry == "collision" ? SurfaceGeometry::collision
-                                        : SurfaceGeometry::automatic,
-           of.links, block.place},
-          diagnostics_);
+      resolved.surface = read_surface(input_.urdf_text,
+                                      {input_.urdf, mesh_places(input_.urdf, input_.mesh_paths),
+                                       of.geometry == "visual"      ? SurfaceGeometry::visual
+                                       : of.geometry == "collision" ? SurfaceGeometry::collision
+                                                                    : SurfaceGeometry::automatic,
+                                       of.links, block.place},
+                                      diagnostics_);
       surfaces_.emplace(key, resolved.surface);
     }
     if (of.links.empty()) {
@@ -127,10 +126,10 @@ class SurfaceResolver {
       if (!is_carrier) others.push_back(link);
     }
     if (!left_out.empty()) {
-      diagnostics_.note(block.place,
-                        fmt::format("error block '{}' leaves out the links that the camera is fixed "
-                                    "to: {}; list them under 'links' to use them",
-                                    block.name, fmt::join(left_out, ", ")));
+      diagnostics_.note(
+          block.place, fmt::format("error block '{}' leaves out the links that the camera is fixed "
+                                   "to: {}; list them under 'links' to use them",
+                                   block.name, fmt::join(left_out, ", ")));
     }
     return RobotSurface(std::move(others));
   }
@@ -155,11 +154,11 @@ class SurfaceResolver {
 
 /// How points count in a round.
 struct RoundManner {
-  double gate = kWidest;            ///< metres
+  double gate = kWidest;             ///< metres
   std::optional<double> huber = {};  ///< metres, of a loss in place of the configured one
-  int rounds = 1;                   ///< at most
-  double tolerance = 1e-8;          ///< relative fall of the cost at which rounds end
-  bool only_front = false;          ///< a point on the far side of a link counts as if beyond the gate
+  int rounds = 1;                    ///< at most
+  double tolerance = 1e-8;           ///< relative fall of the cost at which rounds end
+  bool only_front = false;  ///< a point on the far side of a link counts as if beyond the gate
 };
 
 /// A state of the rounds: what fits the values.
@@ -264,8 +263,8 @@ class SurfaceRounds {
     }
     const FreeSet free = free_of(*problem);
     if (free.size() == 0) return state;
-    state.sums = normal_equations(*problem, span_of(state.values), &free, Losses::as_given,
-                                  input_.threads);
+    state.sums =
+        normal_equations(*problem, span_of(state.values), &free, Losses::as_given, input_.threads);
     state.cost = state.sums.cost + cost_beyond(*problem, manner, state.hits);
     if (!std::isfinite(state.cost)) state.cost = std::numeric_limits<double>::infinity();
     state.free = free.parameters();
@@ -357,7 +356,8 @@ class SearchedFrame {
         std::find_if(chain.joints.begin(), chain.joints.end(), [&](const ChainJoint& one) {
           return one.name == frame.name && one.corrected && !one.reversed;
         });
-    const bool turns = std::all_of(frame.axes.begin(), frame.axes.end(), [](int p) { return p >= 0; });
+    const bool turns =
+        std::all_of(frame.axes.begin(), frame.axes.end(), [](int p) { return p >= 0; });
     if (joint == chain.joints.end() || !turns) return;
     RuntimeChain up_to = chain;
     up_to.joints.assign(chain.joints.begin(), joint + 1);
@@ -379,8 +379,7 @@ class SearchedFrame {
     PosedCloud posed;
     const Observation* seen = sample.observation(pair.camera);
     if (seen == nullptr) return posed;
-    for (const PlacedFeature& point :
-         FeaturePlaces(problem_, at).placed(camera_, *seen, sample)) {
+    for (const PlacedFeature& point : FeaturePlaces(problem_, at).placed(camera_, *seen, sample)) {
       if (point.seen) posed.points.push_back(before_T_base * point.point);
     }
     for (const Pose<double>& link : link_poses(surface, pair, problem_, at, sample)) {
@@ -497,11 +496,9 @@ class SurfaceFit {
     constexpr double kHuber = 0.1;  // of the gate
     RoundState state{.values = values};
     for (const double gate : shrinking.gates) {
-      state = rounds_.run({.gate = gate,
-                           .huber = kHuber * gate,
-                           .rounds = shrinking.rounds,
-                           .tolerance = 1e-3},
-                          samples, state.values);
+      state = rounds_.run(
+          {.gate = gate, .huber = kHuber * gate, .rounds = shrinking.rounds, .tolerance = 1e-3},
+          samples, state.values);
     }
     return state;
   }
@@ -518,7 +515,8 @@ class SurfaceFit {
     std::vector<SurfaceHits> hits;
     rounds_.associate(*rounds_.problem_for({}), samples, state.values, kWidest, hits);
     double least = 1.0;
-    for (const SurfaceHits& of_block : hits) least = std::min(least, quality_of(of_block).contrast());
+    for (const SurfaceHits& of_block : hits)
+      least = std::min(least, quality_of(of_block).contrast());
     return least;
   }
 
@@ -583,8 +581,8 @@ class SurfaceFit {
 };
 
 /// Says how the points of a camera lie on the robot; an error if they do not.
-void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate, const SurfaceHits& hits,
-            std::size_t samples, Diagnostics& diagnostics) {
+void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
+                const SurfaceHits& hits, std::size_t samples, Diagnostics& diagnostics) {
   const SurfaceQuality quality = quality_of(hits);
   if (quality.distances.empty()) return;  // assemble() says so
   const double on = quality.share(kOnRobot);
@@ -595,25 +593,27 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate, c
   if (on < kFewest || quality.contrast() < kChance) {
     diagnostics.error(
         of.place,
-        fmt::format("error block '{}': the points do not lie on the robot.  Of {}, {:.1f} % are "
-                    "within {:.0f} mm of its surface after the best fit, and of those within {:.0f} "
-                    "mm {:.0f} % within {:.0f} mm: as many as by chance.  Are these clouds of this "
-                    "robot, in metres, in the frame of the camera, with the joints of the same time?  "
-                    "If the camera's pose is far off, leave its initial values out: then it is "
-                    "searched for",
-                    of.name, cloud, 100.0 * on, 1e3 * kOnRobot, 2.5e3 * kOnRobot,
-                    100.0 * quality.contrast(), 0.5e3 * kOnRobot));
+        fmt::format(
+            "error block '{}': the points do not lie on the robot.  Of {}, {:.1f} % are "
+            "within {:.0f} mm of its surface after the best fit, and of those within {:.0f} "
+            "mm {:.0f} % within {:.0f} mm: as many as by chance.  Are these clouds of this "
+            "robot, in metres, in the frame of the camera, with the joints of the same time?  "
+            "If the camera's pose is far off, leave its initial values out: then it is "
+            "searched for",
+            of.name, cloud, 100.0 * on, 1e3 * kOnRobot, 2.5e3 * kOnRobot,
+            100.0 * quality.contrast(), 0.5e3 * kOnRobot));
     return;
   }
   const LossType type = loss_type(of.loss.type);
   double cost = 0.0;
-  const double weight = (of.numbers.contains("scale") ? of.numbers.at("scale") : 1.0) /
-                        of.sigma.value_or(1.0);
+  const double weight =
+      (of.numbers.contains("scale") ? of.numbers.at("scale") : 1.0) / of.sigma.value_or(1.0);
   for (const double d : quality.distances) {
     cost += 0.5 * Loss{type, of.loss.scale}(std::pow(weight * d, 2)).rho;
   }
   std::string text = fmt::format(
-      "error block '{}': {}: {:.1f} % lie within {:.0f} mm of the robot, {:.1f} % within {:.4g} mm, "
+      "error block '{}': {}: {:.1f} % lie within {:.0f} mm of the robot, {:.1f} % within {:.4g} "
+      "mm, "
       "and those count; the median distance of all is {:.3f} mm",
       of.name, cloud, 100.0 * on, 1e3 * kOnRobot, 100.0 * quality.share(gate), 1e3 * gate,
       1e3 * median_of(quality.distances));
@@ -662,12 +662,12 @@ void check_camera(const SurfaceBlock& block, const BlockConfig& of, const AnyPro
                                                 sample)[static_cast<std::size_t>(hit.link)];
     const Vector3<double> off = eye - base_T_link * hit.point;
     if (!facts.closed || (off.dot(hit.face) > 0.0) == is_outward) continue;
-    diagnostics.doubt(of.place,
-                      fmt::format("error block '{}': after the fit the camera of sensor '{}' stands "
-                                  "{:.0f} mm inside of link '{}' in {}; leave that link out of "
-                                  "'links' if it is the camera's housing, else the pose is wrong",
-                                  of.name, block.pair.camera, 1e3 * hit.distance, link.name,
-                                  sample.source));
+    diagnostics.doubt(
+        of.place,
+        fmt::format("error block '{}': after the fit the camera of sensor '{}' stands "
+                    "{:.0f} mm inside of link '{}' in {}; leave that link out of "
+                    "'links' if it is the camera's housing, else the pose is wrong",
+                    of.name, block.pair.camera, 1e3 * hit.distance, link.name, sample.source));
     return;
   }
 }

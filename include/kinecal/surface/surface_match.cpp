@@ -101,9 +101,8 @@ std::vector<Sample> with_surface(const RobotSurface& surface, const SurfacePair&
   for (std::size_t s = 0; s < matched.size(); ++s) {
     std::vector<Observation>& all = matched[s].observations;
     std::erase_if(all, [&](const Observation& one) { return one.sensor == pair.robot; });
-    const auto seen = std::find_if(all.begin(), all.end(), [&](const Observation& one) {
-      return one.sensor == pair.camera;
-    });
+    const auto seen = std::find_if(
+        all.begin(), all.end(), [&](const Observation& one) { return one.sensor == pair.camera; });
     if (seen == all.end()) continue;
     std::vector<std::vector<std::size_t>> by_link(surface.links().size());  // chains change seldom
     for (std::size_t i = 0; i < hits[s].size(); ++i) {

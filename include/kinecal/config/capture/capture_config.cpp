@@ -236,6 +236,12 @@ inline void read_tags(ConfigMap& map, CornerKind corners, AprilTagSettings& tags
   return finder;
 }
 
+[[nodiscard]] inline MaskFinder read_mask_finder(ConfigMap& map) {
+  MaskFinder finder;
+  finder.camera_sensor = map.text("camera_sensor_name").value_or(finder.camera_sensor);
+  return finder;
+}
+
 /// Reads a target whose corners are of a kind.
 template <auto read, CornerKind corners>
 [[nodiscard]] FinderSettings with_corners(ConfigMap& map) {
@@ -264,6 +270,7 @@ inline const std::map<std::string, FinderSettings (*)(ConfigMap&)> kFinderTypes 
     {"PlaneFinder", [](ConfigMap& map) -> FinderSettings { return read_plane_finder(map); }},
     {"ScanFinder", [](ConfigMap& map) -> FinderSettings { return read_scan_finder(map); }},
     {"RobotFinder", [](ConfigMap& map) -> FinderSettings { return read_robot_finder(map); }},
+    {"MaskFinder", [](ConfigMap& map) -> FinderSettings { return read_mask_finder(map); }},
 };
 
 namespace {

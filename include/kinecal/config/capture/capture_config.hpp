@@ -20,6 +20,7 @@
 #include "kinecal/capture/finders/checkerboard_finder.hpp"
 #include "kinecal/capture/finders/circle_grid_finder.hpp"
 #include "kinecal/capture/finders/led_finder.hpp"
+#include "kinecal/capture/finders/mask_finder.hpp"
 #include "kinecal/capture/finders/plane_finder.hpp"
 #include "kinecal/capture/finders/robot_finder.hpp"
 #include "kinecal/capture/finders/scan_finder.hpp"
@@ -38,7 +39,7 @@ struct CaptureChain {
 /// Settings of any finder: itself, or what a `FinderType` is made from.
 using FinderSettings =
     std::variant<LedFinder, CheckerboardSettings, AprilTagSettings, CharucoSettings,
-                 CircleGridSettings, PlaneFinder, ScanFinder, RobotFinder>;
+                 CircleGridSettings, PlaneFinder, ScanFinder, RobotFinder, MaskFinder>;
 
 /// A finder and the source of its views.
 struct CaptureFinder {
