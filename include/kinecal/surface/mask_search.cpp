@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/solve/rotation_grid.hpp"
 
@@ -19,9 +20,9 @@ namespace {
 
 using Points = std::vector<Vector3<double>>;
 
-constexpr int kColumns = 180;   ///< of the image in which a search looks
-constexpr double kCell = 0.05;  ///< metres: detail of the robot there
-constexpr double kFar = 30.0;   ///< pixels there: points farther outside of a mask are alike
+constexpr double kSpread = 25.0;  ///< pixels: of the edges of a mask, in the image of the search
+constexpr std::size_t kTriangles = 300;  ///< of a link there
+constexpr double kFar = 30.0;  ///< pixels there: points farther outside of a mask are alike
 
 /// A mask in the image of the search.
 struct SearchedMask {
@@ -44,7 +45,7 @@ class MaskSearcher {
  public:
   MaskSearcher(const RobotSurface& surface, std::span<const PosedMask> samples,
                const MaskSearch& search)
-      : search_(search), outliner_(surface, kCell) {
+      : search_(search), outliner_(surface, kTriangles) {
     std::vector<Points> of_links;
     for (const SurfaceLink& link : surface.links()) of_links.push_back(few_points(link.tree));
     set_image(samples);
@@ -119,22 +120,31 @@ class MaskSearcher {
     return points;
   }
 
-  /// Chooses the image: all masks are in it.
+  /// The image of the search shows what the camera shows, so large that half of the edges of a mask are within kSpread
+  /// pixels of their middle.
   void set_image(std::span<const PosedMask> samples) {
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()),
-                    high = -low;
+    Eigen::Vector2d low = samples.front().low, high = samples.front().high;
+    std::vector<double> spreads;
     for (const PosedMask& sample : samples) {
+      low = low.cwiseMin(sample.low);
+      high = high.cwiseMax(sample.high);
+      if (sample.edges.empty()) continue;
+      std::vector<double> u, v, away;
       for (const MaskEdge& edge : sample.edges) {
-        low = low.cwiseMin(edge.pixel);
-        high = high.cwiseMax(edge.pixel);
+        u.push_back(edge.pixel.x());
+        v.push_back(edge.pixel.y());
       }
+      const Eigen::Vector2d middle(median_of(std::move(u)), median_of(std::move(v)));
+      for (const MaskEdge& edge : sample.edges) away.push_back((edge.pixel - middle).norm());
+      spreads.push_back(median_of(std::move(away)));
     }
-    if (!(high.x() > low.x() && high.y() > low.y())) return;
+    constexpr double kMost = 800.0;  // pixels
     const Eigen::Vector2d size = high - low;
-    low -= 0.2 * size;
-    focal_ = kColumns / (1.4 * size.x());
+    focal_ =
+        std::min(kSpread / std::max(1e-9, median_of(std::move(spreads))), kMost / size.maxCoeff());
     offset_ = -focal_ * low;
-    height_ = static_cast<int>(std::ceil(focal_ * 1.4 * size.y()));
+    width_ = std::max(1, static_cast<int>(std::ceil(focal_ * size.x())));
+    height_ = std::max(1, static_cast<int>(std::ceil(focal_ * size.y())));
   }
 
   /// Samples whose links are farthest apart, in turn.
@@ -164,13 +174,19 @@ class MaskSearcher {
     std::vector<MaskEdge> edges;
     std::vector<Eigen::Vector2d> pixels;
     for (const MaskEdge& edge : sample.edges) {
-      edges.push_back({focal_ * edge.pixel + offset_, edge.normal});
-      pixels.push_back(edges.back().pixel);
+      const Eigen::Vector2d at = focal_ * edge.pixel + offset_;
+      if (at.x() < kMaskBorder || at.y() < kMaskBorder || at.x() > width_ - 1 - kMaskBorder ||
+          at.y() > height_ - 1 - kMaskBorder) {
+        continue;
+      }
+      edges.push_back({at, edge.normal});
+      pixels.push_back(at);
     }
+    if (edges.empty()) return;
     SearchedMask mask{
-        std::move(edges), PixelGrid(std::move(pixels), kColumns, height_), {}, {}, 0.0, 0, {},
+        std::move(edges), PixelGrid(std::move(pixels), width_, height_), {}, {}, 0.0, 0, {},
         sample.links};
-    mask.outside = Image<float>(1 + kColumns / kStep, 1 + height_ / kStep, 0.0F);
+    mask.outside = Image<float>(1 + width_ / kStep, 1 + height_ / kStep, 0.0F);
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     double squares = 0.0;
     for (int v = 0; v < mask.outside.height; ++v) {
@@ -307,10 +323,10 @@ class MaskSearcher {
                           : Eigen::Vector2d(Eigen::Vector2d::Constant(
                                 std::numeric_limits<double>::quiet_NaN()));
     };
-    const std::vector<OutlinePoint> outline = outliner_.outline(links, pixel_of, kColumns, height_);
+    const std::vector<OutlinePoint> outline = outliner_.outline(links, pixel_of, width_, height_);
     std::vector<Eigen::Vector2d> pixels;
     for (const OutlinePoint& point : outline) pixels.push_back(point.pixel);
-    const PixelGrid grid(std::move(pixels), kColumns, height_);
+    const PixelGrid grid(std::move(pixels), width_, height_);
     const Vector3<double> pivot = pivot_of(camera_T_parent);
     const auto add = [&](const OutlinePoint& point, const MaskEdge& edge, double weight) {
       const Eigen::Vector2d way = point.pixel - edge.pixel;
@@ -360,7 +376,7 @@ class MaskSearcher {
   Outliner outliner_;
   double focal_ = 1.0;
   Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();
-  int height_ = 1;
+  int width_ = 1, height_ = 1;
   std::vector<SearchedMask> masks_;
 };
 

@@ -16,7 +16,8 @@ namespace kinecal {
 
 /// One sample of a search: the mask that a camera sees, and the robot that it is of.
 struct PosedMask {
-  std::vector<MaskEdge> edges;      ///< in an ideal camera: pixel (x / z, y / z)
+  std::vector<MaskEdge> edges;  ///< in an ideal camera: pixel (x / z, y / z)
+  Eigen::Vector2d low, high;  ///< (2) corners of the image there: what is outside of it has no mask
   std::vector<Pose<double>> links;  ///< of the surface, in the frame in which the pose is given
 };
 
@@ -24,7 +25,7 @@ struct PosedMask {
 struct MaskSearch {
   int rotations = 3000;  ///< of the grid
   int samples = 6;       ///< at most
-  int refined = 40;      ///< poses that go downhill
+  int refined = 60;      ///< poses that go downhill
   int kept = 4;          ///< poses that are returned
 };
 

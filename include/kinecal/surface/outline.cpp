@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -34,24 +35,32 @@ class Raster {
     const auto [u0, u1] = range(a.x(), b.x(), c.x(), width_);
     const auto [v0, v1] = range(a.y(), b.y(), c.y(), height_);
     if (u0 > u1 || v0 > v1) return;
-    const Eigen::Vector2d first(middle(u0), middle(v0));
-    std::array<double, 3> row, by_u, by_v;  // distances from the sides, times their lengths
+    // A sample is inside if its distances from the three sides are not negative: from one column of a row to another.
     const std::array<std::pair<const Eigen::Vector2d*, const Eigen::Vector2d*>, 3> sides = {
         {{&a, &b}, {&b, &c}, {&c, &a}}};
+    std::array<double, 3> at, by_u, by_v;  // times the lengths of the sides
     for (std::size_t k = 0; k < 3; ++k) {
       const Eigen::Vector2d side = sign * (*sides[k].second - *sides[k].first);
-      row[k] = cross(side, first - *sides[k].first);
+      at[k] = cross(side, Eigen::Vector2d(middle(u0), middle(v0)) - *sides[k].first);
       by_u[k] = -side.y() / kPerPixel;
       by_v[k] = side.x() / kPerPixel;
     }
     for (int v = v0; v <= v1; ++v) {
-      std::uint8_t* sample = &samples_[index(u0, v)];
-      std::array<double, 3> at = row;
-      for (int u = u0; u <= u1; ++u, ++sample) {
-        if (at[0] >= 0.0 && at[1] >= 0.0 && at[2] >= 0.0) *sample = 255;
-        for (std::size_t k = 0; k < 3; ++k) at[k] += by_u[k];
+      double first = 0.0, last = u1 - u0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double from = at[k] + (v - v0) * by_v[k];
+        if (by_u[k] > 0.0) {
+          first = std::max(first, std::ceil(-from / by_u[k]));
+        } else if (by_u[k] < 0.0) {
+          last = std::min(last, std::floor(-from / by_u[k]));
+        } else if (from < 0.0) {
+          last = -1.0;
+        }
       }
-      for (std::size_t k = 0; k < 3; ++k) row[k] += by_v[k];
+      if (first > last) continue;
+      const auto begin = samples_.begin() + static_cast<std::ptrdiff_t>(index(u0, v));
+      std::fill(begin + static_cast<std::ptrdiff_t>(first),
+                begin + static_cast<std::ptrdiff_t>(last) + 1, 255);
     }
   }
 
@@ -97,6 +106,42 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 
+/// Vertices, and triangles between them.
+struct TriangleList {
+  std::vector<Vector3<double>> vertices;
+  std::vector<Corners> triangles;
+};
+
+/// The triangles of a link.
+/// @param cell  metres: vertices within one cube of this size are one, their mean; zero: those at the same place
+[[nodiscard]] TriangleList triangles_of(const TriangleTree& tree, double cell) {
+  TriangleList list;
+  std::map<std::tuple<double, double, double>, std::uint32_t> numbers;
+  std::vector<double> counts;
+  const auto number_of = [&](const Vector3<double>& p) {
+    const Vector3<double> k = cell > 0.0 ? Vector3<double>((p / cell).array().floor()) : p;
+    const auto [known, is_new] = numbers.emplace(std::tuple(k.x(), k.y(), k.z()),
+                                                 static_cast<std::uint32_t>(list.vertices.size()));
+    if (is_new) {
+      list.vertices.push_back(p);
+      counts.push_back(1.0);
+    } else if (cell > 0.0) {
+      Vector3<double>& mean = list.vertices[known->second];
+      mean += (p - mean) / ++counts[known->second];
+    }
+    return known->second;
+  };
+  std::set<Corners> known;  // trees have some triangles twice
+  for (int t = 0; t < tree.count(); ++t) {
+    const auto& corners = tree.corners(t);
+    Corners c = {number_of(corners[0]), number_of(corners[1]), number_of(corners[2])};
+    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
+    std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
+    if (known.insert(c).second) list.triangles.push_back(c);
+  }
+  return list;
+}
+
 /// True if a pixel is farther than kMaskBorder from the border of an image.
 [[nodiscard]] bool is_inside(const Eigen::Vector2d& at, int width, int height) {
   return at.x() >= kMaskBorder && at.y() >= kMaskBorder && at.x() <= width - 1 - kMaskBorder &&
@@ -106,33 +151,15 @@ using Corners = std::array<std::uint32_t, 3>;
 }  // namespace
 }  // namespace detail
 
-Outliner::Outliner(const RobotSurface& surface, double cell) {
+Outliner::Outliner(const RobotSurface& surface, std::size_t triangles) {
   for (const SurfaceLink& of : surface.links()) {
     Link& link = links_.emplace_back();
-    using Key = std::tuple<double, double, double>;
-    std::map<Key, std::uint32_t> numbers;
-    std::vector<double> counts;
-    const auto number_of = [&](const Vector3<double>& p) {
-      const Vector3<double> k = cell > 0.0 ? Vector3<double>((p / cell).array().floor()) : p;
-      const auto [known, is_new] = numbers.emplace(
-          Key(k.x(), k.y(), k.z()), static_cast<std::uint32_t>(link.vertices.size()));
-      if (is_new) {
-        link.vertices.push_back(p);
-        counts.push_back(1.0);
-      } else if (cell > 0.0) {
-        Vector3<double>& mean = link.vertices[known->second];
-        mean += (p - mean) / ++counts[known->second];
-      }
-      return known->second;
-    };
-    std::map<detail::Corners, bool> known;  // trees have some triangles twice
-    for (int t = 0; t < of.tree.count(); ++t) {
-      const auto& corners = of.tree.corners(t);
-      detail::Corners c = {number_of(corners[0]), number_of(corners[1]), number_of(corners[2])};
-      if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
-      std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
-      if (known.emplace(c, true).second) link.triangles.push_back(c);
+    detail::TriangleList list = detail::triangles_of(of.tree, 0.0);
+    for (double cell = 0.02 * of.tree.radius(); list.triangles.size() > triangles; cell *= 1.4) {
+      list = detail::triangles_of(of.tree, cell);
     }
+    link.vertices = std::move(list.vertices);
+    link.triangles = std::move(list.triangles);
     const bool is_inside_out = of.tree.facts().closed && of.tree.facts().volume < 0.0;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>
         open;  // edges with one triangle
@@ -215,6 +242,9 @@ std::vector<OutlinePoint> Outliner::outline(std::span<const Pose<double>> camera
       Eigen::Vector2d normal(a.y() - b.y(), b.x() - a.x());
       normal /= length;
       const int count = std::max(1, static_cast<int>(std::ceil(length)));
+      const auto distance = [&](const Vector3<double>& of) {
+        return (camera_T_links[l] * of).norm();
+      };
       for (int i = 0; i < count; ++i) {
         const double part = (i + 0.5) / count;
         const Eigen::Vector2d pixel = a + part * (b - a);
@@ -229,8 +259,10 @@ std::vector<OutlinePoint> Outliner::outline(std::span<const Pose<double>> camera
         here = 1;
         const Vector3<double>&p = link.vertices[edge.corners[0]],
               &q = link.vertices[edge.corners[1]];
-        outline.push_back({pixel, left ? Eigen::Vector2d(-normal) : normal, static_cast<int>(l),
-                           p + part * (q - p)});
+        const double near = (1.0 - part) * distance(q), far = part * distance(p);
+        const Vector3<double> point = p + far / (near + far) * (q - p);
+        outline.push_back({pixel_of(camera_T_links[l] * point),
+                           left ? Eigen::Vector2d(-normal) : normal, static_cast<int>(l), point});
       }
     }
   }

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -39,8 +40,9 @@ struct OutlinePoint {
 /// Finds outlines of a robot.
 class Outliner {
  public:
-  /// @param cell  metres: vertices of a link within one cube of this size are one; zero: all of them count
-  explicit Outliner(const RobotSurface& surface, double cell = 0.0);
+  /// @param triangles  of a link, at most: near vertices become one until there are no more
+  explicit Outliner(const RobotSurface& surface,
+                    std::size_t triangles = std::numeric_limits<std::size_t>::max());
 
   /// The outline in an image: about one point per pixel of its length, none within kMaskBorder of the border.
   /// @param camera_T_links  poses of the links of the surface, in their order
