@@ -6,7 +6,6 @@
 #include "kinecal/tools/detect/contact_sheet.hpp"
 #include "kinecal/tools/detect/detect.hpp"
 #include "kinecal/tools/detect/detect_all.hpp"
-#include "kinecal/tools/detect/fixed_frames.hpp"
 #include "kinecal/tools/detect/image_folder.hpp"
 #include "kinecal/tools/detect/joint_motion.hpp"
 #include "kinecal/tools/detect/joint_track.hpp"

@@ -26,13 +26,13 @@
 #include "kinecal/files/messages/decode.hpp"
 #include "kinecal/files/messages/known_definitions.hpp"
 #include "kinecal/files/messages/view_message.hpp"
+#include "kinecal/files/recordings/fixed_frames.hpp"
 #include "kinecal/files/recordings/read_bag.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/frame_name.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
-#include "kinecal/tools/detect/fixed_frames.hpp"
 #include "kinecal/tools/detect/joint_tracks.hpp"
 #include "kinecal/tools/detect/listed.ipp"
 #include "kinecal/tools/detect/still_view.hpp"
@@ -495,6 +495,11 @@ struct DepthBeside {
 
   [[nodiscard]] bool is_registered() const { return !other_frame && settings.empty(); }
 
+  [[nodiscard]] std::string differs() const {
+    const std::string frames = ", frame '" + frame + "' instead of '" + image_frame + "'";
+    return ((other_frame ? frames : "") + settings).substr(2);
+  }
+
   /// The camera, if it is known where it stands.
   [[nodiscard]] std::optional<RangeCamera> camera(const FixedFrames& frames) const {
     if (info == nullptr || image_info == nullptr) return std::nullopt;
@@ -541,15 +546,10 @@ struct DepthBeside {
       if (options.robot) frames->add(*options.robot);
     }
     depths[c] = beside.camera(*frames);
-    const std::string differs =
-        (beside.other_frame
-             ? ", frame '" + beside.frame + "' instead of '" + beside.image_frame + "'"
-             : "") +
-        beside.settings;
     const std::string what = "topic '" + printable(camera.depth) +
                              "': its depth is not registered to the image of topic '" +
                              printable(camera.image) +
-                             "' but of another camera: " + printable(differs.substr(2));
+                             "' but of another camera: " + printable(beside.differs());
     if (!depths[c]) {
       diagnostics.error({options.path, 0},
                         what +

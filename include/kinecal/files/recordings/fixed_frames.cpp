@@ -1,6 +1,6 @@
 // Definitions of fixed_frames.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/tools/detect/fixed_frames.hpp"
+#include "kinecal/files/recordings/fixed_frames.hpp"
 
 #include <Eigen/Core>
 #include <cmath>
