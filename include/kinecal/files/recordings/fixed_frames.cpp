@@ -18,7 +18,7 @@ namespace kinecal {
 namespace {
 
 /// The pose of a geometry_msgs/TransformStamped; nullopt if it is none.
-[[nodiscard]] std::optional<Pose<double>> pose_of(const MessageFields& stamped) {
+[[nodiscard]] std::optional<Pose<double>> transform_of(const MessageFields& stamped) {
   const auto at = [&](const char* name) { return detail::number_at(stamped, name); };
   const Eigen::Vector4d q(at("transform.rotation.x"), at("transform.rotation.y"),
                           at("transform.rotation.z"), at("transform.rotation.w"));
@@ -92,7 +92,7 @@ FixedFrames recorded_frames(const std::string& path) {
     }
     for (const MessageValue& item : detail::list_at(*content, "transforms")) {
       const auto* stamped = item.as<MessageFields>();
-      const auto pose = stamped != nullptr ? pose_of(*stamped) : std::nullopt;
+      const auto pose = stamped != nullptr ? transform_of(*stamped) : std::nullopt;
       if (!pose) continue;
       frames.add(std::string(detail::text_at(*stamped, "header.frame_id")),
                  std::string(detail::text_at(*stamped, "child_frame_id")), *pose);
