@@ -146,7 +146,8 @@ void check_recordings(const std::vector<std::string>& bags) {
 
 void add_recordings(const DetectOptions& options, DetectionInput& task, Diagnostics& diagnostics) {
   for (const std::string& bag : options.bags) {
-    RecordingOptions recording{.path = bag, .frame = options.frame, .camera = task.camera};
+    RecordingOptions recording{
+        .path = bag, .frame = options.frame, .camera = task.camera, .robot = task.robot};
     for (const std::string& topic : options.joints) {
       recording.joints.push_back(detail::plain_topic(topic));
     }

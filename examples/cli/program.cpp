@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/program.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -34,6 +37,16 @@ std::string one_of(const std::string& type, const std::vector<std::string>& valu
   std::string list;
   for (const std::string& value : values) list += (list.empty() ? "" : ",") + value;
   return type + ":{" + list + "}";
+}
+
+/// Refuses other values than a few words, which help and completion list.
+CLI::Validator one_word_of(const std::vector<std::string>& words) {
+  const auto check = [words](const std::string& value) -> std::string {
+    if (std::find(words.begin(), words.end(), value) != words.end()) return "";
+    return fmt::format("'{}' is not one of {}{}", kinecal::printable(value), fmt::join(words, ", "),
+                       kinecal::did_you_mean(value, words));
+  };
+  return {check, one_of("", words).substr(1)};
 }
 
 std::vector<std::string> target_words() {
@@ -113,7 +126,7 @@ CLI::Option* add_input(CLI::App& command, InputOptions& options) {
           },
           "before or after <calibration rising> of the URDF was written: after, the recorded "
           "positions contain it; before, it is added to them")
-      ->check(CLI::IsMember({"after", "before"}))
+      ->check(one_word_of({"after", "before"}))
       ->default_str("after");
   return samples;
 }
@@ -125,7 +138,7 @@ void add_offsets(CLI::App& command, std::string& offsets) {
           "where joint offsets go: rising adds them to <calibration rising>, origin puts them "
           "into the joints' <origin>, which all programs read, ros2_control adds them to <param "
           "name=\"offset\"> of the joint; default: ros2_control if it has that, else rising")
-      ->check(CLI::IsMember({"rising", "origin", "ros2_control"}));
+      ->check(one_word_of({"rising", "origin", "ros2_control"}));
 }
 
 void add_reader(CLI::App& command, std::string& reader) {
@@ -135,7 +148,7 @@ void add_reader(CLI::App& command, std::string& reader) {
           "who reads the result, so whose errors are judged: driver applies "
           "calibration.yaml (true_position.hpp), urdf reads calibrated.urdf with its zeros, "
           "origins reads it without <calibration rising>; default: urdf")
-      ->check(CLI::IsMember({"driver", "urdf", "origins"}));
+      ->check(one_word_of({"driver", "urdf", "origins"}));
 }
 
 /// The files of the robot's programs.
@@ -155,7 +168,7 @@ void add_robot_files(CLI::App& command, RobotFileOptions& files) {
       .add_option("--servos", files.servos,
                   "make of these servos, which decides the sign: homing offsets of feetech are "
                   "subtracted from what the encoder reads, those of dynamixel are added")
-      ->check(CLI::IsMember({"feetech", "dynamixel"}))
+      ->check(one_word_of({"feetech", "dynamixel"}))
       ->needs(homing)
       ->capture_default_str();
   command
@@ -170,7 +183,7 @@ void add_manner(CLI::App& command, Manner& manner) {
   command
       .add_option("--color", manner.color,
                   "auto: on a terminal, unless NO_COLOR is set; always; never")
-      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->check(one_word_of({"auto", "always", "never"}))
       ->capture_default_str();
 }
 
@@ -273,7 +286,7 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
       .add_option("--cost", options.cost,
                   "how Ceres gets the samples: compressed sums them, stacked keeps every feature "
                   "(slower, for comparison)")
-      ->check(CLI::IsMember({"compressed", "stacked"}))
+      ->check(one_word_of({"compressed", "stacked"}))
       ->capture_default_str();
 }
 
@@ -417,7 +430,7 @@ void add_simulate(CLI::App& command, SimulateOptions& options) {
           "checkerboard (default, apriltag if this build does not find it), apriltag, aprilgrid "
           "(Kalibr's), ground, or leds for a session")
       ->excludes(scene)
-      ->check(CLI::IsMember({"checkerboard", "apriltag", "aprilgrid", "ground", "leds"}));
+      ->check(one_word_of({"checkerboard", "apriltag", "aprilgrid", "ground", "leds"}));
   command.add_option("--poses", options.poses, "number of images, default: 30")
       ->check(CLI::Range(1, 9999))
       ->type_name("N");
@@ -454,7 +467,7 @@ void add_study_files(CLI::App& command, StudyFiles& files) {
       .add_option("--target", files.target, "checkerboard (default), apriltag, aprilgrid or leds")
       ->excludes(scene)
       ->excludes(samples)
-      ->check(CLI::IsMember({"checkerboard", "apriltag", "aprilgrid", "leds"}));
+      ->check(one_word_of({"checkerboard", "apriltag", "aprilgrid", "leds"}));
   command.add_option("--seed", files.seed, "random seed (default 1) of robots and noise")
       ->check(CLI::Range(1, 1000000000))
       ->type_name("N");
@@ -541,7 +554,7 @@ void add_select_poses(CLI::App& command, SelectPosesOptions& options) {
       .add_option("--criterion", options.criterion,
                   "gripper: variance of the gripper in the camera; a: mean variance of the "
                   "parameters; d: volume of their uncertainty; e: the worst combination")
-      ->check(CLI::IsMember({"gripper", "a", "d", "e"}))
+      ->check(one_word_of({"gripper", "a", "d", "e"}))
       ->capture_default_str();
   command
       .add_option("--distance", options.least_distance,
@@ -807,7 +820,7 @@ void add_camera(CLI::App& command, CameraOptions& options) {
           "--keys", options.keys,
           "file: keys as in files of camera drivers; message: as in the ROS 2 message; kalibr "
           "or opencv: as these read it")
-      ->check(CLI::IsMember({"file", "message", "kalibr", "opencv"}))
+      ->check(one_word_of({"file", "message", "kalibr", "opencv"}))
       ->needs(output)
       ->capture_default_str();
   command.add_option("--name", options.name, "camera_name in the file; cam0 for Kalibr")
@@ -883,7 +896,7 @@ void add_recheck(CLI::App& command, RecheckOptions& options) {
           },
           "before or after calibrated.urdf and the calibrated cameras were installed; default: "
           "what fits better")
-      ->check(CLI::IsMember({"after", "before"}));
+      ->check(one_word_of({"after", "before"}));
   command.add_option("--report", options.report, "write what is found as JSON")->type_name("FILE");
   add_manner(command, options.manner);
 }
@@ -954,7 +967,7 @@ void add_describe(CLI::App& command, DescribeOptions& options) {
       .add_option("format", options.format,
                   "man: a manual page; bash, zsh: completion of commands and options")
       ->required()
-      ->check(CLI::IsMember({"man", "bash", "zsh", "fish"}));
+      ->check(one_word_of({"man", "bash", "zsh", "fish"}));
   command.add_option("--output", options.output, "the file to write")->type_name("FILE");
   command.add_flag("--force", options.force, "replace the file that is there");
 }

@@ -42,6 +42,7 @@
 #include "kinecal/capture/image.hpp"
 #include "kinecal/capture/opencv/kinecal_opencv.hpp"
 #include "kinecal/capture/plugin_file.hpp"
+#include "kinecal/capture/registered_points.hpp"
 #include "kinecal/capture/robot_interface.hpp"
 #include "kinecal/capture/session/capture_pose.hpp"
 #include "kinecal/capture/session/pose_generation.hpp"

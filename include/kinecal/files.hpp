@@ -49,6 +49,7 @@
 #include "kinecal/files/recordings/bag_output.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/convert.hpp"
+#include "kinecal/files/recordings/fixed_frames.hpp"
 #include "kinecal/files/recordings/pose_messages.hpp"
 #include "kinecal/files/recordings/read_bag.hpp"
 #include "kinecal/files/recordings/read_recording.hpp"

@@ -90,8 +90,7 @@ TEST_F(Configurations, OfThePandaAreGood) {
 }
 
 TEST_F(Configurations, OfTheShippedRobotsAreGood) {
-  const std::string programs =
-      std::filesystem::path(test::calibrate_fetch_program()).parent_path().string() + "/calibrate_";
+  const std::string programs = test::program("calibrate_");
   std::vector<std::string> names = {"fetch", "panda", "pr2", "tiago", "ubr1", "ur5e"};
   names.resize(static_cast<std::size_t>(test::repetitions(6, 2)));
   for (const std::string& robot : names) {
@@ -106,7 +105,7 @@ TEST_F(Configurations, OfTheShippedRobotsAreGood) {
             "good");
   const std::string example = test::source_folder() + "/examples/mobile_manipulator/";
   const std::string urdf = example + "mobile_manipulator.urdf";
-  ASSERT_EQ(run(test::generate_samples_program() + " " + urdf + " .").code, 0);
+  ASSERT_EQ(run(test::program("generate_example_samples") + " " + urdf + " .").code, 0);
   EXPECT_EQ(verdict("examples/mobile_manipulator/calibrate.yaml",
                     test::kinecal_program() + " calibrate --dry-run --urdf " + urdf + " --config " +
                         example + "calibrate.yaml --samples samples.yaml"),

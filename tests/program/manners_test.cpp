@@ -145,6 +145,13 @@ TEST_F(Manners, ProposesTheOptionThatWasMeant) {
                                      "mean '--samples'?"));
   EXPECT_THAT(kinecal("check --conifg=b").err, HasSubstr("did you mean '--config'?"));
   EXPECT_THAT(kinecal("rpy 1 2 3 --xyz").err, HasSubstr("'--xyz' is not an option of 'rpy'; "));
+  for (const std::string command : {"plan --urdf r.urdf", "simulate r.urdf -o sim"}) {
+    EXPECT_THAT(
+        kinecal(command + " --target chekerboard").err,
+        HasSubstr("--target: 'chekerboard' is not one of checkerboard, apriltag, aprilgrid, "));
+    EXPECT_THAT(kinecal(command + " --target chekerboard").err,
+                HasSubstr("; did you mean 'checkerboard'? "));
+  }
   EXPECT_THAT(kinecal("check --urdf a").err, HasSubstr("--config is required"));
 }
 

@@ -62,7 +62,7 @@ class OwnProgram : public test::ProgramTest {
   }
 
   [[nodiscard]] test::Outcome calibrate() const {
-    return run(test::own_program() +
+    return run(test::program("own_kinecal") +
                " calibrate --urdf arm.urdf --config calibrate.yaml --samples samples.yaml "
                "--output result");
   }

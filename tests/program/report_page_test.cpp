@@ -25,7 +25,7 @@ class ReportPage : public test::ProgramTest {
       fs::copy(robot / file, folder_);
     }
     const Outcome made =
-        run(test::generate_samples_program() + " mobile_manipulator.urdf . < /dev/null");
+        run(test::program("generate_example_samples") + " mobile_manipulator.urdf . < /dev/null");
     EXPECT_EQ(made.code, 0) << made.err;
   }
   [[nodiscard]] Outcome calibrate(const std::string& arguments) const {

@@ -34,7 +34,7 @@ class RobotHeaderProgram : public test::ProgramTest {
   RobotHeaderProgram() { write("arm.urdf", kHeaderUrdf); }
 
   [[nodiscard]] test::Outcome generate(const std::string& arguments) const {
-    return run(test::robot_header_program() + " " + arguments);
+    return run(test::program("kinecal_robot_header") + " " + arguments);
   }
 
   /// The URDF with one piece of text replaced is refused with this message; the header that was

@@ -1,7 +1,8 @@
-// Humanoids, a quadruped and mobile manipulators: init, simulate, plan, detect and calibrate.
+// Humanoids large and small, a quadruped, mobile manipulators and an arm on a platform: init, simulate, plan, detect and calibrate.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -181,8 +182,102 @@ std::string quadruped_with_arm() {
          camera_on("hand", "0.12 0 0.02");
 }
 
+/// Two arms of five joints that hang from shoulders: roll of the shoulder away from the body, an elbow that only bends.
+/// @param at       of the left shoulder: x, y and z, metres
+/// @param lengths  of the upper arm, the forearm and the hand, metres
+std::string arms_of_five(const std::string& torso, const std::array<std::string, 3>& at,
+                         const std::array<std::string, 3>& lengths) {
+  std::string lines;
+  for (const std::string s : {"l", "r"}) {
+    const bool left = s == "l";
+    const std::string sign = left ? "" : "-";
+    lines += s + "_shoulder_pitch revolute " + torso + " " + s + "_shoulder " + at[0] + " " + sign +
+             at[1] + " " + at[2] + " 0 0 0 0 1 0 -2.08 2.08\n" + s + "_shoulder_roll revolute " +
+             s + "_shoulder " + s + "_biceps 0 0 0 0 0 0 0 0 1 " +
+             (left ? "-0.31 1.32" : "-1.32 0.31") + "\n" + s + "_elbow_yaw revolute " + s +
+             "_biceps " + s + "_elbow " + lengths[0] + " " + sign +
+             "0.015 0 0 0 0 1 0 0 -2.08 2.08\n" + s + "_elbow_roll revolute " + s + "_elbow " + s +
+             "_forearm 0 0 0 0 0 0 0 0 1 " + (left ? "-1.54 -0.03" : "0.03 1.54") + "\n" + s +
+             "_wrist_yaw revolute " + s + "_forearm " + s + "_wrist " + lengths[1] +
+             " 0 0 0 0 0 1 0 0 -1.82 1.82\n" + s + "_hand_joint fixed " + s + "_wrist " + s +
+             "_gripper " + lengths[2] + " 0 -0.01\n";
+  }
+  return lines;
+}
+
+/// A humanoid half a metre tall: its hands reach 0.2 m from its head.
+std::string small_humanoid() {
+  return "head_yaw revolute base_link neck 0 0 0.126 0 0 0 0 0 1 -2.08 2.08\n"
+         "head_pitch revolute neck head 0 0 0 0 0 0 0 1 0 -0.67 0.51\n" +
+         camera_on("head", "0.059 0 0.064") +
+         arms_of_five("base_link", {"0", "0.098", "0.1"}, {"0.105", "0.056", "0.058"}) +
+         leg("l", "base_link", "0 0.05 -0.085", "0.1", "0.103") +
+         leg("r", "base_link", "0 -0.05 -0.085", "0.1", "0.103");
+}
+
+/// A humanoid on wheels, with a knee and a hip.
+std::string wheeled_humanoid() {
+  return "knee_pitch revolute base_link thigh 0 0 0.334 0 0 0 0 1 0 -0.51 0.51\n"
+         "hip_pitch revolute thigh pelvis 0 0 0.268 0 0 0 0 1 0 -1.03 1.03\n"
+         "hip_roll revolute pelvis torso 0 0 0.079 0 0 0 1 0 0 -0.51 0.51\n"
+         "head_yaw revolute torso neck -0.038 0 0.31 0 0 0 0 0 1 -2.08 2.08\n"
+         "head_pitch revolute neck head 0 0 0 0 0 0 0 1 0 -0.7 0.63\n" +
+         camera_on("head", "0.087 0 0.154") +
+         arms_of_five("torso", {"-0.057", "0.15", "0.227"}, {"0.181", "0.15", "0.07"});
+}
+
+/// A lift with a head and one arm of seven joints.
+std::string lift_with_head() {
+  return "torso_lift prismatic base_link torso -0.06 0 0.79 0 0 0 0 0 1 0 0.35\n"
+         "head_1 revolute torso head_1_link 0.18 0 0 0 0 0 0 0 1 -1.24 1.24\n"
+         "head_2 revolute head_1_link head_2_link 0.005 0 0.1 0 0 0 0 1 0 -0.72 0.98\n" +
+         camera_on("head_2_link", "0.05 0 0.06") +
+         "arm_1 revolute torso arm_1_link 0.155 -0.014 -0.151 0 0 -1.57 0 0 1 0.07 2.68\n"
+         "arm_2 revolute arm_1_link arm_2_link 0.125 0.02 -0.03 0 0 0 0 -1 0 -1.5 1.02\n"
+         "arm_3 revolute arm_2_link arm_3_link 0.09 0 0 0 0 0 1 0 0 -3.46 1.57\n"
+         "arm_4 revolute arm_3_link arm_4_link 0.22 0 0.02 0 0 0 0 -1 0 -0.32 2.29\n"
+         "arm_5 revolute arm_4_link arm_5_link 0.16 0 -0.02 0 0 0 1 0 0 -2.07 2.07\n"
+         "arm_6 revolute arm_5_link arm_6_link 0.15 0 0 0 0 0 0 1 0 -1.39 1.39\n"
+         "arm_7 revolute arm_6_link arm_7_link 0 0 0 0 0 0 1 0 0 -2.07 2.07\n"
+         "tool_joint fixed arm_7_link tool 0.16 0 0\n";
+}
+
+/// A torso on a pedestal with two long arms, and a head that only pans.
+std::string two_long_arms() {
+  std::string lines = "head_pan revolute base_link head 0.06 0 0.686 0 0 0 0 0 1 -1.39 1.39\n" +
+                      camera_on("head", "0.12 0 0.1 0 0.5 0");
+  for (const std::string s : {"l", "r"}) {
+    const std::string sign = s == "l" ? "" : "-";
+    const auto joint = [&](const std::string& name, const std::string& parent,
+                           const std::string& rest) {
+      lines +=
+          s + "_" + name + " revolute " + parent + " " + s + "_" + name + "_link " + rest + "\n";
+    };
+    joint("s0", "base_link", "0.064 " + sign + "0.259 0.13 0 0 " + sign + "0.785 0 0 1 -1.7 1.7");
+    joint("s1", s + "_s0_link", "0.069 0 0.27 0 0 0 0 1 0 -2.14 1.04");
+    joint("e0", s + "_s1_link", "0.102 0 0 0 0 0 1 0 0 -3.05 3.05");
+    joint("e1", s + "_e0_link", "0.262 0 -0.069 0 0 0 0 1 0 -0.05 2.61");
+    joint("w0", s + "_e1_link", "0.104 0 0 0 0 0 1 0 0 -3.05 3.05");
+    joint("w1", s + "_w0_link", "0.271 0 -0.01 0 0 0 0 1 0 -1.57 2.09");
+    joint("w2", s + "_w1_link", "0.116 0 0 0 0 0 1 0 0 -3.05 3.05");
+    lines += s + "_gripper_joint fixed " + s + "_w2_link " + s + "_gripper 0.16 0 0\n";
+  }
+  return lines;
+}
+
+/// Five joints on a low platform, with a camera in the hand.
+std::string arm_on_platform() {
+  return "arm_1 revolute base_link arm_1_link 0.167 0 0.17 0 0 0 0 0 1 -2.95 2.95\n"
+         "arm_2 revolute arm_1_link arm_2_link 0.033 0 0.019 0 0 0 0 1 0 -1.13 1.57\n"
+         "arm_3 revolute arm_2_link arm_3_link 0 0 0.155 0 0 0 0 1 0 -2.54 2.54\n"
+         "arm_4 revolute arm_3_link arm_4_link 0 0 0.135 0 0 0 0 1 0 -1.78 1.78\n"
+         "arm_5 revolute arm_4_link arm_5_link 0 0 0.114 0 0 0 0 0 1 -2.92 2.92\n" +
+         camera_on("arm_5_link", "0.05 0 0.04 0 -1.5707963 0");
+}
+
 struct Kind {
   std::string name, lines, target, arm;  ///< target and arm of `init`; the arm is proposed first
+  int poses = 16;                        ///< of the calibration
 };
 
 class RobotsOfManyKinds : public test::ProgramTest, public testing::WithParamInterface<Kind> {};
@@ -203,7 +298,8 @@ TEST_P(RobotsOfManyKinds, AreSimulatedPlannedAndCalibrated) {
   const Outcome init = kinecal("init --urdf robot.urdf --camera camera_optical_frame --target " +
                                kind.target + " --camera-type camera2d" + arm);
   ASSERT_EQ(init.code, 0) << init.err;
-  const Outcome made = kinecal("simulate robot.urdf --target apriltag --poses 16 -o sim");
+  const Outcome made = kinecal("simulate robot.urdf --target apriltag --poses " +
+                               std::to_string(kind.poses) + " -o sim");
   ASSERT_EQ(made.code, 0) << made.err;
   const Outcome plan =
       kinecal("plan --urdf robot.urdf --target apriltag --candidates 12 -o p.yaml");
@@ -226,7 +322,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Kind{"Casters", manipulator_with_casters(), "apriltag", "palm"},
                     Kind{"Telescope", telescope(), "apriltag", "gripper"},
                     Kind{"Odometry", manipulator_with_odometry(), "apriltag", "palm"},
-                    Kind{"Quadruped", quadruped_with_arm(), "world_apriltag", ""}),
+                    Kind{"Quadruped", quadruped_with_arm(), "world_apriltag", ""},
+                    Kind{"SmallHumanoid", small_humanoid(), "apriltag", "l_gripper"},
+                    Kind{"WheeledHumanoid", wheeled_humanoid(), "apriltag", "l_gripper"},
+                    Kind{"LiftWithHead", lift_with_head(), "apriltag", "tool"},
+                    Kind{"TwoLongArms", two_long_arms(), "apriltag", "l_gripper", 20},
+                    Kind{"ArmOnPlatform", arm_on_platform(), "world_apriltag", ""}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace

@@ -76,10 +76,10 @@ std::map<std::string, double> parameters(const YAML::Node& report) {
 
 TEST_F(RobotProgram, FetchsCrateSolvesWhatItsConfigurationSays) {
   const test::Outcome drawn =
-      run(test::calibrate_fetch_program() + " --write-samples drawn.yaml --output a");
+      run(test::program("calibrate_fetch") + " --write-samples drawn.yaml --output a");
   ASSERT_EQ(drawn.code, 0) << drawn.err;
   const test::Outcome crate =
-      run(test::calibrate_fetch_program() + " --samples drawn.yaml --output crate");
+      run(test::program("calibrate_fetch") + " --samples drawn.yaml --output crate");
   ASSERT_EQ(crate.code, 0) << crate.err;
   const test::Outcome configured =
       run(test::kinecal_program() + " calibrate --urdf " + kRobots + "fetch/fetch.urdf --config " +
@@ -136,8 +136,7 @@ std::set<int> left_out(const YAML::Node& report) {
 }
 
 TEST_F(RobotProgram, PandasCrateNamesTheRuinedSamplesAsTheProgramDoes) {
-  const std::string panda =
-      (fs::path(test::calibrate_fetch_program()).parent_path() / "calibrate_panda").string();
+  const std::string panda = test::program("calibrate_panda");
   ASSERT_EQ(run(panda + " --write-samples drawn.yaml").code, 0);
   const std::set<int> ruined = ruin(folder_ / "drawn.yaml");
   ASSERT_EQ(ruined.size(), 10u);
@@ -169,21 +168,21 @@ TEST_F(RobotProgram, PandasCrateNamesTheRuinedSamplesAsTheProgramDoes) {
 
 TEST_F(RobotProgram, ReportsWhatItFoundOnSamplesHeldOut) {
   const test::Outcome result =
-      run(test::calibrate_fetch_program() + " --pairs 40 --planes 10 --seed 3");
+      run(test::program("calibrate_fetch") + " --pairs 40 --planes 10 --seed 3");
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("On samples held out"));
   EXPECT_THAT(result.out, HasSubstr("2 of 26 parameters cannot be determined"));
 }
 
 TEST_F(RobotProgram, ExitsWith2WhereHeldOutSamplesShowMoreThanNoise) {
-  const test::Outcome result = run(test::calibrate_fetch_program() + " --pairs 6 --planes 3");
+  const test::Outcome result = run(test::program("calibrate_fetch") + " --pairs 6 --planes 3");
   EXPECT_EQ(result.code, 2) << result.out;
   EXPECT_THAT(result.err, HasSubstr("samples that were held out show more than noise"));
 }
 
 TEST_F(RobotProgram, RefusesSamplesThatAreNotThere) {
   const test::Outcome result =
-      run(test::calibrate_fetch_program() + " --samples none.yaml --output out");
+      run(test::program("calibrate_fetch") + " --samples none.yaml --output out");
   EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.err, HasSubstr("none.yaml"));
   EXPECT_FALSE(fs::exists(folder_ / "out"));

@@ -74,7 +74,7 @@ Files shipped_fetch() {
   static const Files drawn = [] {
     const test::TemporaryFolder folder;
     const test::Outcome run = test::run_in(
-        folder.path(), test::calibrate_fetch_program() + " --write-samples s.yaml --output a");
+        folder.path(), test::program("calibrate_fetch") + " --write-samples s.yaml --output a");
     if (run.code != 0) throw std::runtime_error(run.err);
     const fs::path robot = fs::path(test::source_folder()) / "examples/robots/fetch";
     return files_of(robot / "fetch.urdf", robot / "calibrate.yaml", folder.path() / "s.yaml");

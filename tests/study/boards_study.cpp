@@ -3,6 +3,7 @@
 //
 //   boards_study [VIEWS [TARGET]]             renders VIEWS, by default 20, for each lens and target, or only
 //                                             for targets whose names contain TARGET
+//   boards_study bent [VIEWS]                 Kalibr's grid on flat and on bent paper
 //   boards_study FOLDER COLUMNS ROWS          photographs, of a board with so many inner corners
 //
 // Rendered targets are anywhere in the field of view, also beyond 90 degrees from the axis of a fisheye.
@@ -319,30 +320,82 @@ std::optional<Target> target_in_view(const NamedCamera& of, const Kind& kind, st
   return std::nullopt;
 }
 
+void render(const NamedCamera& camera, const Kind& kind, int views,
+            const std::function<double(double, double)>& bend = {}) {
+  Comparison both;
+  both.names = std::getenv("KINECAL_REFUSALS") != nullptr;
+  for (int i = 0; i < views; ++i) {
+    auto target = target_in_view(camera, kind, static_cast<std::uint64_t>(i));
+    if (!target) continue;
+    target->bend = bend;
+    Exposure how;
+    how.blur = 0.4 + 0.1 * (i % 9);
+    how.noise = 1.0 + i % 4;
+    how.shade = 0.1 * (i % 5);
+    how.seed = static_cast<unsigned>(i);
+    const auto truth = [&](const Eigen::Vector2d& place) {
+      return pixel_of(camera.camera, *target, place);
+    };
+    both.add(picture(camera.camera, {*target}, how), kind, truth, "view " + std::to_string(i));
+  }
+  both.print(camera.name, kind);
+}
+
 void render(int views, const std::string& which) {
   print_head();
   for (const NamedCamera& camera : cameras()) {
     for (const Kind& kind : kinds()) {
-      if (kind.name.find(which) == std::string::npos) continue;
-      Comparison both;
-      both.names = std::getenv("KINECAL_REFUSALS") != nullptr;
-      for (int i = 0; i < views; ++i) {
-        const auto target = target_in_view(camera, kind, static_cast<std::uint64_t>(i));
-        if (!target) continue;
-        Exposure how;
-        how.blur = 0.4 + 0.1 * (i % 9);
-        how.noise = 1.0 + i % 4;
-        how.shade = 0.1 * (i % 5);
-        how.seed = static_cast<unsigned>(i);
-        const auto truth = [&](const Eigen::Vector2d& place) {
-          return pixel_of(camera.camera, target->camera_T_board, {place.x(), place.y(), 0.0});
-        };
-        both.add(picture(camera.camera, {*target}, how), kind, truth, "view " + std::to_string(i));
-      }
-      both.print(camera.name, kind);
+      if (kind.name.find(which) != std::string::npos) render(camera, kind, views);
     }
   }
 }
+
+#ifdef KINECAL_HAVE_APRILTAG
+
+/// Kalibr's grid of 6 x 6 tags of 50 mm on paper that is flat, rolled, wavy, or whose corner curls up.
+void render_bent(int views) {
+  const Kind flat = tags_kind(6, 6);
+  const double size = flat.most.x();
+  struct Paper {
+    const char* name;
+    std::function<double(double, double)> bend;
+  };
+  const auto rolled = [=](double height) {
+    return [=](double x, double y) {
+      const double u = (0.9 * x + 0.4 * y) / size - 0.6;
+      return -4.0 * height * u * u;
+    };
+  };
+  const auto curled = [=](double height) {
+    return [=](double x, double y) {
+      const double beyond = std::max(0.0, (x + y) / size - 1.2) / 0.8;
+      return -height * beyond * beyond;
+    };
+  };
+  const auto wavy = [=](double height) {
+    return [=](double x, double y) {
+      return height * std::sin(2.0 * std::numbers::pi * (x + 0.3 * y) / size);
+    };
+  };
+  const std::vector<Paper> papers = {{"flat", {}},
+                                     {"rolled 5 mm", rolled(0.005)},
+                                     {"rolled 15 mm", rolled(0.015)},
+                                     {"curled 5 mm", curled(0.005)},
+                                     {"curled 15 mm", curled(0.015)},
+                                     {"curled 30 mm", curled(0.03)},
+                                     {"wavy 2 mm", wavy(0.002)},
+                                     {"wavy 5 mm", wavy(0.005)}};
+  print_head();
+  for (const NamedCamera& camera : cameras()) {
+    for (const Paper& paper : papers) {
+      Kind kind = flat;
+      kind.name += std::string(", ") + paper.name;
+      render(camera, kind, views, paper.bend);
+    }
+  }
+}
+
+#endif
 
 void read(const std::string& folder, int columns, int rows) {
   std::vector<std::string> files;
@@ -362,6 +415,12 @@ void read(const std::string& folder, int columns, int rows) {
 }  // namespace kinecal::test
 
 int main(int count, char** words) {
+#ifdef KINECAL_HAVE_APRILTAG
+  if (count > 1 && std::string(words[1]) == "bent") {
+    kinecal::test::render_bent(count > 2 ? std::max(1, std::atoi(words[2])) : 10);
+    return 0;
+  }
+#endif
   if (count == 4) {
     kinecal::test::read(words[1], std::atoi(words[2]), std::atoi(words[3]));
   } else {

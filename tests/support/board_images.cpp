@@ -10,12 +10,23 @@ namespace kinecal::test {
 
 namespace {
 
+/// How far along a ray the paper of a target is; not above zero if it is not there.
+/// @param from, way  (3) in the target
+double distance_of(const Target& target, const Vector3<double>& from, const Vector3<double>& way) {
+  double t = -from.z() / way.z();
+  constexpr int kSteps = 8;  // of a fixed point: paper is seen from above
+  for (int n = 0; n < kSteps && target.bend; ++n) {
+    t = (target.bend(from.x() + t * way.x(), from.y() + t * way.y()) - from.z()) / way.z();
+  }
+  return t;
+}
+
 /// Brightness along a ray: of the nearest target that it meets.
 double ray_value(const std::vector<Target>& targets, const std::vector<Pose<double>>& inverse,
                  const Vector3<double>& ray, const Exposure& how) {
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const Vector3<double> from = inverse[i].translation, way = inverse[i].rotation * ray;
-    const double t = -from.z() / way.z();
+    const double t = distance_of(targets[i], from, way);
     if (!(t > 0.0)) continue;
     const double value = targets[i].print(from.x() + t * way.x(), from.y() + t * way.y());
     if (value >= 0.0) return how.black + value * (how.white - how.black);

@@ -28,8 +28,9 @@ struct Exposure {
 
 /// A target in front of the camera.
 struct Target {
-  Print print;                  ///< what is printed on it
-  Pose<double> camera_T_board;  ///< z forward, x right, y down
+  Print print;                                          ///< what is printed on it
+  Pose<double> camera_T_board;                          ///< z forward, x right, y down
+  std::function<double(double x, double y)> bend = {};  ///< z of its paper, metres; empty: flat
 };
 
 inline CameraInfo camera_640(double focal_length = 600.0) {
@@ -71,6 +72,13 @@ inline CameraInfo fisheye_camera(int width, int height, double view,
 inline Eigen::Vector2d pixel_of(const CameraInfo& camera, const Pose<double>& camera_T_board,
                                 const Vector3<double>& p_board) {
   return Lens(camera).project(camera_T_board * p_board);
+}
+
+/// The same of a place on the paper of a target, which may be bent.
+inline Eigen::Vector2d pixel_of(const CameraInfo& camera, const Target& target,
+                                const Eigen::Vector2d& place) {
+  const double z = target.bend ? target.bend(place.x(), place.y()) : 0.0;
+  return pixel_of(camera, target.camera_T_board, {place.x(), place.y(), z});
 }
 
 /// A target that faces the camera, then turned about the camera's axes (radians), with the point

@@ -18,18 +18,16 @@ namespace kinecal::test {
 
 // Programs, in program_paths.cpp: only where the programs are built.
 
+/// A program of this build, or of the folder bin/ of another one that KINECAL_BIN names: "calibrate_fetch".
+[[nodiscard]] std::string program(const std::string& name);
+
+/// The program kinecal.
 [[nodiscard]] std::string kinecal_program();
-[[nodiscard]] std::string robot_header_program();
-[[nodiscard]] std::string calibrate_fetch_program();
-[[nodiscard]] std::string generate_samples_program();
 
 /// mpirun; empty where the build has found no MPI.
 [[nodiscard]] std::string mpirun();
 
 /// True if the program has its evaluation for several levels of the processor.
 [[nodiscard]] bool has_levels();
-
-/// The program of examples/ that adds its own error block.
-[[nodiscard]] std::string own_program();
 
 }  // namespace kinecal::test

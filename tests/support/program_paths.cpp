@@ -1,23 +1,19 @@
-// Programs of this build, from CMake.
+// Programs of this build, from CMake, or of another one.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+#include <filesystem>
+
 #include "support/paths.hpp"
 
 namespace kinecal::test {
 
+std::string program(const std::string& name) {
+  const char* other = std::getenv("KINECAL_BIN");
+  return std::string(other != nullptr ? other : KINECAL_BIN) + "/" + name;
+}
+
 std::string kinecal_program() {
-  return KINECAL_PROGRAM;
-}
-
-std::string robot_header_program() {
-  return KINECAL_ROBOT_HEADER_PROGRAM;
-}
-
-std::string calibrate_fetch_program() {
-  return KINECAL_CALIBRATE_FETCH;
-}
-
-std::string generate_samples_program() {
-  return KINECAL_GENERATE_SAMPLES;
+  return program("kinecal");
 }
 
 std::string mpirun() {
@@ -25,11 +21,7 @@ std::string mpirun() {
 }
 
 bool has_levels() {
-  return KINECAL_HAS_LEVELS;
-}
-
-std::string own_program() {
-  return KINECAL_OWN_PROGRAM;
+  return std::filesystem::exists(program("../lib/kinecal/glibc-hwcaps"));
 }
 
 }  // namespace kinecal::test

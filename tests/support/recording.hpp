@@ -70,6 +70,23 @@ class Recorder {
                          std::int64_t{binning}, "binning_y", std::int64_t{binning}));
   }
 
+  /// @param pose  of `child` in `parent`, metres
+  void transform(const std::string& topic, Stamp stamp, const std::string& parent,
+                 const std::string& child, const Pose<double>& pose) {
+    const Eigen::Vector4d q = detail::quaternion(pose.rotation).normalized();
+    const Vector3<double>& t = pose.translation;
+    MessageFields one = detail::fields(
+        "header",
+        detail::fields("stamp", detail::time_fields(stamp), "frame_id", std::string_view(parent)),
+        "child_frame_id", std::string_view(child), "transform",
+        detail::fields("translation", detail::fields("x", t.x(), "y", t.y(), "z", t.z()),
+                       "rotation", detail::fields("x", q(0), "y", q(1), "z", q(2), "w", q(3))));
+    MessageValue::List all;
+    all.emplace_back(std::move(one));
+    bag_.write({topic, "tf2_msgs/TFMessage"}, (stamp + delay).count(),
+               detail::fields("transforms", std::move(all)));
+  }
+
   void finish() { bag_.finish(); }
 
  private:

@@ -514,7 +514,11 @@ bool check_terms(const StepConfig& step, const AnyProblem& problem, std::span<co
     if (missing.are_in(*block)) continue;  // report_missing() says so
     warn_of_disjoint_ids(term, *block, samples, diagnostics);
     warn_of_one_sided_ids(term, *block, samples, diagnostics);
-    if (count == 0) {
+    if (count == 0 && term.sensors.empty()) {
+      diagnostics.warning(
+          block->place, fmt::format("error block '{}': no sample has its conditions: {}", term.name,
+                                    fmt::join(term.conditions, ", ")));
+    } else if (count == 0) {
       diagnostics.warning(block->place, fmt::format("error block '{}': no sample has usable "
                                                     "features of all its sensors{}",
                                                     term.name, missing_ground(*block, samples)));

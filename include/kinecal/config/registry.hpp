@@ -91,6 +91,8 @@ struct BlockEntry {
   std::vector<std::pair<std::string, double>> numbers;  ///< keys and defaults; "scale" is a factor
                                                         ///< of the residual in every block
   bool has_param = false;                               ///< true if it has a key `param`: a prior
+  bool looks_before =
+      false;                 ///< true if it takes conditions of the sample before: see set_before()
   bool is_upstream = false;  ///< from robot_calibration, whose files may have keys that we ignore
   /// The block's own parameters.
   /// @throws std::exception  if the numbers of the block are impossible

@@ -40,8 +40,22 @@
 //   template <class S, class Q>
 //   auto operator()(const Vector3<S>& p, const std::array<Q, 4>& conditions) const;
 //
-// Each is looked up in Feature::conditions of the block's sensors, in their order, then in Sample::conditions.  Blocks
+// Each is looked up in Feature::conditions of the block's sensors, in their order, then in Sample::conditions, then in the
+// measured positions of joints; "before left_wheel" is what left_wheel was in the sample before (Sample::before).  Blocks
 // of planes take those of the sample.
+//
+// A block without a sensor has one residual vector in each sample that has its conditions: wheels against the way that
+// they went, a scale against a load.  It has own parameters, and no other argument:
+//
+//   struct Rollout {  // metres of a wheel's turn
+//     static constexpr const char* kUnit = "m";
+//     static constexpr std::array kParameters = {ParameterInfo{"radius", "m", 0.1}};
+//     static constexpr std::array<std::string_view, 3> kConditions = {"way", "wheel", "before wheel"};
+//     template <class S, class Q>
+//     Eigen::Matrix<S, 1, 1> operator()(const std::array<S, 1>& own, const std::array<Q, 3>& c) const {
+//       return Eigen::Matrix<S, 1, 1>(own[0] * (c[1] - c[2]) - c[0]);
+//     }
+//   };
 //
 // A scalar may be a packet with one sample per lane, so a block must not branch on values: write
 // select(x < y, a, b) instead of x < y ? a : b.  (Planes are compared sample by sample; their
@@ -173,7 +187,7 @@ using ResultOfCall =
 template <class B, class Inputs>
 struct ResultFor {};
 template <class B, Quantity... Qs>
-requires requires {
+requires(sizeof...(Qs) > 0) && requires {
   typename ResultOfCall<B, Argument<Qs, Probe>...>;
 }
 struct ResultFor<B, Takes<Qs...>> : std::type_identity<ResultOfCall<B, Argument<Qs, Probe>...>> {};
@@ -184,6 +198,14 @@ requires requires {
 }
 struct ResultFor<B, Takes<Quantity::point, Quantity::pixel>>
     : std::type_identity<ResultOfCall<B, PixelObservation<Probe>>> {};
+
+/// A block without a sensor, which needs parameters to find and conditions to find them from.
+template <class B>
+requires requires {
+  typename ResultOfCall<B>;
+} &&(kParametersOfBlock<B> > 0) && (!kConditionsOfBlock<B>.empty())  //
+    struct ResultFor<B, Takes<>> : std::type_identity<ResultOfCall<B>> {
+};
 
 /// A block that takes these inputs, whatever it returns.
 template <class B, class Inputs>
@@ -214,7 +236,7 @@ struct InputsOf
                  Takes<Quantity::point, Quantity::point, Quantity::point>,
                  Takes<Quantity::point, Quantity::point, Quantity::point, Quantity::point>,
                  Takes<Quantity::pose>, Takes<Quantity::pose, Quantity::pose>, Takes<Quantity::ray>,
-                 Takes<Quantity::ray, Quantity::ray>> {};
+                 Takes<Quantity::ray, Quantity::ray>, Takes<>> {};
 template <class B>
 requires requires {
   typename B::Inputs;
@@ -231,7 +253,7 @@ concept ReturnsVectorOfFixedSize = IsResidualOfSensors<B> || !InputsOf<B>::kTake
 
 }  // namespace detail
 
-/// A residual of the observations of one to four sensors.
+/// A residual of the observations of up to four sensors.
 template <class B>
 concept ErrorBlock = detail::ReturnsVectorOfFixedSize<B> && detail::IsResidualOfSensors<B>;
 
@@ -249,7 +271,7 @@ template <class B>
 /// The quantities that a block takes from its sensors.
 template <ErrorBlock B>
 inline constexpr const auto& kQuantities = detail::InputsOf<B>::type::kAll;
-/// Number of sensors that a block compares; one for a point compared with a constant.
+/// Number of sensors that a block compares; one for a point compared with a constant, none for conditions alone.
 template <ErrorBlock B>
 inline constexpr int kSensors = static_cast<int>(kQuantities<B>.size());
 

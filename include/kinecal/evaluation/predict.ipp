@@ -52,7 +52,7 @@ KINECAL_INLINE std::vector<Prediction> predict(const AnyProblem& problem, Parame
       p.block = term.name;
       p.feature = one->feature(t, 0, row / term.feature_size);
       p.residual = rows.residual.segment(row, term.feature_size);
-      if (term.quantities.back() != Quantity::pixel) continue;
+      if (term.quantities.empty() || term.quantities.back() != Quantity::pixel) continue;
       const MountedSensor& points = one->sensors()[static_cast<std::size_t>(term.sensors[0])];
       const MountedSensor& camera = one->sensors()[static_cast<std::size_t>(term.sensors[1])];
       const auto is_number = [&](const MountedSensor& sensor) {

@@ -159,6 +159,19 @@ struct TermConditions {
   std::size_t step = 0;        ///< number of those of a feature; zero: they are the sample's
 };
 
+/// A condition of a sample: one of it, the measured position of a joint, or either in the sample before; NaN if it has
+/// none of that name.
+[[nodiscard]] inline double condition_of(const std::string& name, const Sample& sample) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  if (name.starts_with(kBefore)) {
+    const auto found = sample.before.find(name.substr(kBefore.size()));
+    return found == sample.before.end() ? kUnknown : found->second;
+  }
+  const auto found = sample.conditions.find(name);
+  return found == sample.conditions.end() ? sample.position(name).value_or(kUnknown)
+                                          : found->second;
+}
+
 /// One condition of a feature: of the first sensor that has it there, else of the sample; NaN if neither has it.
 [[nodiscard]] inline double condition_of(const std::string& name,
                                          const std::vector<const Observation*>& seen,
@@ -167,9 +180,20 @@ struct TermConditions {
     const auto& own = of_sensor->features[feature].conditions;
     if (const auto found = own.find(name); found != own.end()) return found->second;
   }
-  const auto found = sample.conditions.find(name);
-  return found == sample.conditions.end() ? std::numeric_limits<double>::quiet_NaN()
-                                          : found->second;
+  return condition_of(name, sample);
+}
+
+/// True if a block without a sensor should apply to a sample: it has one of the block's conditions, or joints suffice;
+/// and there is a sample before it if the block looks there.
+[[nodiscard]] inline bool has_conditions(const Term& term, const Sample& sample) {
+  const auto& names = term.conditions;
+  const auto is_before = [](std::string_view name) { return name.starts_with(kBefore); };
+  if (sample.before.empty() && std::any_of(names.begin(), names.end(), is_before)) return false;
+  return std::any_of(names.begin(), names.end(),
+                     [&](auto name) { return sample.conditions.contains(std::string(name)); }) ||
+         std::all_of(names.begin(), names.end(), [&](auto name) {
+           return std::isfinite(condition_of(std::string(name), sample));
+         });
 }
 
 /// The conditions that a term takes in a sample.
@@ -203,6 +227,8 @@ struct TermConditions {
       if (std::isfinite(value)) continue;
       std::set<std::string> names;
       for (const auto& [known, number] : sample.conditions) names.insert(known);
+      for (const auto& [known, number] : sample.before) names.insert(std::string(kBefore) + known);
+      if (seen.empty()) names.insert(sample.joint_names.begin(), sample.joint_names.end());
       for (const Observation* of_sensor : seen) {
         for (const auto& [known, number] : of_sensor->features[i].conditions) names.insert(known);
       }
@@ -234,7 +260,7 @@ struct TermConditions {
 }
 
 /// The features that a term compares in a sample: those that all of its sensors observed.  Empty if
-/// the term does not apply; one entry for planes.
+/// the term does not apply; one entry for planes, and for a block without a sensor.
 /// @throws SampleError  if it should apply, but cannot
 [[nodiscard]] inline std::vector<std::size_t> compared_features(
     const Term& term, const std::vector<MountedSensor>& sensors, const Sample& sample,
@@ -248,6 +274,7 @@ struct TermConditions {
   for (const int s : term.sensors) {
     if (!observed[static_cast<std::size_t>(s)]) return {};
   }
+  if (term.sensors.empty() && !has_conditions(term, sample)) return {};
   const auto seen = observations_of(term, observed);
   const auto sensor = [&](std::size_t i) -> const MountedSensor& {
     return sensors[static_cast<std::size_t>(term.sensors[i])];
@@ -271,7 +298,7 @@ struct TermConditions {
       throw SampleError("error block '" + term.name + "': " + why);
     }
   }
-  if (!term.pairs_features()) return {0};
+  if (seen.empty() || !term.pairs_features()) return {0};
   std::vector<std::size_t> features;
   for (std::size_t i = 0; i < seen[0]->usable.size(); ++i) {
     const auto has_it = [i](const auto* of_sensor) { return of_sensor->usable[i] > 0.0; };
@@ -299,7 +326,8 @@ using ComparedFeatures = std::map<int, std::vector<std::size_t>>;
   SampleRow row;
   for (std::size_t s = 0; s < used.size(); ++s) row.add_sensor(used[s] ? &*observed[s] : nullptr);
   for (const auto& [t, features] : compared) {
-    const TermConditions conditions = conditions_of(term(t), sensors, sample, features);
+    TermConditions conditions = conditions_of(term(t), sensors, sample, features);
+    if (term(t).sensors.empty()) conditions.values.push_back(1.0);  // it is present
     row.add_term(t, inverse_sigmas_of(term(t), observed), conditions.values, conditions.step);
   }
   return row;
@@ -381,6 +409,7 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   AddedSample added{.source = source, .unused = detail::unused_of(sensors_, sample, observed)};
   for (const auto& [t, features] : compared) {
     added.residuals += static_cast<int>(features.size()) * term(t).feature_size;
+    if (term(t).sensors.empty()) continue;
     const std::string& first = sensor(term(t).sensors.front()).mount().name;
     const Observation* recorded = sample.observation(first);
     auto labels = detail::labels_of(term(t), features, *recorded,

@@ -84,7 +84,8 @@ struct Term {
   TermOptions options = {};  ///< sigma, loss, names
   double sigma = 1.0;        ///< the stated one, or an estimate: standard deviation of a residual
   double weight = 1.0;  ///< scale / sigma; that of a feature with a sigma: scale / Feature::sigma
-  std::vector<int> sensors = {};              ///< indices in the problem of those that are compared
+  std::vector<int> sensors =
+      {};  ///< indices in the problem of those that are compared; may be empty
   std::vector<int> parameters = {};           ///< table indices of the block's own parameters
   std::span<const Quantity> quantities = {};  ///< the block's input from each of its sensors
   /// Names of the conditions, of a feature or its sample, that the block takes.
@@ -95,7 +96,9 @@ struct Term {
 
   /// True if feature i is the same one for all sensors; false if all features of a sensor form one
   /// plane.
-  [[nodiscard]] bool pairs_features() const { return quantities.front() != Quantity::plane; }
+  [[nodiscard]] bool pairs_features() const {
+    return quantities.empty() || quantities.front() != Quantity::plane;
+  }
 };
 
 /// A prior with its weight and loss.

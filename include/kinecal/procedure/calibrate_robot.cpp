@@ -37,6 +37,17 @@ namespace {
                      [](const ModelConfig& model) { return model.lens == kAnyLens; });
 }
 
+/// True if an error block takes conditions of the sample before.
+[[nodiscard]] bool looks_before(const Config& config) {
+  return std::any_of(config.steps.begin(), config.steps.end(), [](const StepConfig& step) {
+    const auto looks = [](const BlockConfig& block) {
+      const BlockEntry* entry = entry_of(block);
+      return entry != nullptr && entry->looks_before;
+    };
+    return std::any_of(step.error_blocks.begin(), step.error_blocks.end(), looks);
+  });
+}
+
 /// The samples without those that are excluded.
 /// @param exclude  numbers, from 1
 [[nodiscard]] std::vector<Sample> without(const std::vector<Sample>& samples,
@@ -328,6 +339,7 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
   if (std::none_of(prepared.samples.begin(), prepared.samples.end(), has_moves)) {
     set_joint_moves(prepared.samples);
   }
+  if (detail::looks_before(config)) set_before(prepared.samples);
   prepared.decides_cameras = waits || !config.per_sample.empty();
   if (!prepare_cameras(prepared.robot, config, prepared.samples, found)) return prepared;
   if (!is_open && waits) hold_parameters(config, options.hold, found);

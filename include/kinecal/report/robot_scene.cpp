@@ -178,6 +178,7 @@ class ScenePoints {
       if (observation == nullptr || !is_known(sensor(s))) return {};
       seen.push_back(places_.placed(s, *observation, sample));
     }
+    if (seen.empty()) return {};
     if (kinds == std::vector{plane, plane}) return pairs_of_planes(seen[0], seen[1]);
     std::vector<std::optional<ScenePair>> all;
     for (const std::size_t i : compared(term, sample)) {

@@ -1,4 +1,5 @@
-// How joints moved in a recording: the direction from which each came to a pose, and velocities.
+// How joints moved in a recording: the direction from which each came to a pose, velocities, and what the sample before
+// had.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -41,6 +42,19 @@ inline void set_joint_moves(std::span<Sample> samples) {
       JointWay& way = ways[sample.joint_names[i]];
       way.pass(sample.joint_positions[i]);
       sample.joint_moves[i] = way.move;
+    }
+  }
+}
+
+/// Sets Sample::before, for error blocks that look at the sample before.
+/// @param samples  of one recording, in its order
+inline void set_before(std::span<Sample> samples) {
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const Sample& last = samples[i - 1];
+    std::map<std::string, double>& before = samples[i].before = last.conditions;
+    for (std::size_t j = 0; j < std::min(last.joint_names.size(), last.joint_positions.size());
+         ++j) {
+      before.emplace(last.joint_names[j], last.joint_positions[j]);
     }
   }
 }

@@ -11,12 +11,16 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinecal/geometry/pose.hpp"
 #include "kinecal/kinematics/floating_joint.hpp"
 
 namespace kinecal {
+
+/// Begins the name of a condition that is one of the sample before: "before left_wheel".
+inline constexpr std::string_view kBefore = "before ";
 
 /// One observed point, pixel, pose or reading.
 struct Feature {
@@ -89,6 +93,9 @@ struct Sample {
   /// How far each joint has come from where it stood before, radians or metres; 0 if it has not
   /// moved yet; empty: unknown.  See set_joint_moves().
   std::vector<double> joint_moves = {};
+  /// What the sample before it in the recording had: its conditions and joint positions, by name; empty: there is
+  /// none, or nobody asked.  Error blocks name those they take, after kBefore.  See set_before().
+  std::map<std::string, double> before = {};
   /// Measured poses of floating joints by name, such as that of a flange: parent_T_child without the
   /// joint's origin, metres.  See kinematics/floating_joint.hpp.
   std::map<std::string, Pose<double>> poses = {};

@@ -82,8 +82,9 @@ std::set<std::string> measuring_sensors(const AnyProblem& problem,
       measuring.insert(name);
       has_one = true;
     }
+    if (has_one || problem.term(t).sensors.empty()) continue;
     const auto last = static_cast<std::size_t>(problem.term(t).sensors.back());
-    if (!has_one) measuring.insert(problem.sensors()[last].mount().name);
+    measuring.insert(problem.sensors()[last].mount().name);
   }
   return measuring;
 }

@@ -23,10 +23,10 @@ struct BlockInput;
 /// Input of a block: its arguments as vectors of three numbers, its parameters and its conditions.
 template <ErrorBlock B, class S, Quantity... Qs>
 struct BlockInput<B, S, Takes<Qs...>> {
-  static constexpr std::array kQuantities = {Qs...};
+  static constexpr auto& kQuantities = Takes<Qs...>::kAll;
   static constexpr std::size_t kOwn = kParametersOfBlock<B>;
-  static constexpr std::size_t kValues = (InputOf<Qs>::kValues + ...);
-  static constexpr int kArguments = (kInputVariables<Qs> + ...);
+  static constexpr std::size_t kValues = (0 + ... + InputOf<Qs>::kValues);
+  static constexpr int kArguments = (0 + ... + kInputVariables<Qs>);
   static constexpr int kVariables = kArguments + static_cast<int>(kOwn), kM = kResiduals<B>;
 
   std::array<Vector3<S>, kValues> values;
@@ -36,7 +36,7 @@ struct BlockInput<B, S, Takes<Qs...>> {
   /// These arguments, and the initial values of the parameters.
   [[nodiscard]] static BlockInput of(const B& block, const Argument<Qs, S>&... arguments) {
     BlockInput input;
-    Vector3<S>* next = input.values.data();
+    [[maybe_unused]] Vector3<S>* next = input.values.data();
     ((InputOf<Qs>::to_base(Pose<S>{}, arguments, next), next += InputOf<Qs>::kValues), ...);
     const auto infos = parameters_of(block);
     for (std::size_t i = 0; i < kOwn; ++i) input.own[i] = infos[i].initial;
@@ -45,7 +45,7 @@ struct BlockInput<B, S, Takes<Qs...>> {
   /// Random arguments, and parameters within 0.1 of their initial values.
   [[nodiscard]] static BlockInput random(const B& block, RandomInput& random) {
     BlockInput input;
-    Vector3<S>* next = input.values.data();
+    [[maybe_unused]] Vector3<S>* next = input.values.data();
     ((randomize<Qs>(random, next), next += InputOf<Qs>::kValues), ...);
     const auto infos = parameters_of(block);
     for (std::size_t i = 0; i < kOwn; ++i) {
@@ -75,7 +75,7 @@ struct BlockInput<B, S, Takes<Qs...>> {
   /// The residual.
   [[nodiscard]] Eigen::Matrix<S, kM, 1> residual(const B& block) const {
     const Vector3<S>* next = values.data();
-    const auto take = [&]<Quantity Q>(std::integral_constant<Quantity, Q>) {
+    [[maybe_unused]] const auto take = [&]<Quantity Q>(std::integral_constant<Quantity, Q>) {
       next += InputOf<Q>::kValues;
       return InputOf<Q>::template plain<S>(next - InputOf<Q>::kValues);
     };
@@ -90,7 +90,7 @@ struct BlockInput<B, S, Takes<Qs...>> {
     using J = Jet<S, kVariables>;
     const Vector3<S>* next = values.data();
     int first = 0;
-    const auto take = [&]<Quantity Q>(std::integral_constant<Quantity, Q>) {
+    [[maybe_unused]] const auto take = [&]<Quantity Q>(std::integral_constant<Quantity, Q>) {
       next += InputOf<Q>::kValues;
       first += kInputVariables<Q>;
       return InputOf<Q>::template jets<J>(next - InputOf<Q>::kValues, first - kInputVariables<Q>);
@@ -114,7 +114,7 @@ struct BlockInput<B, S, Takes<Qs...>> {
       return input;
     }
     Vector3<S>* next = input.values.data();
-    const auto move = [&]<Quantity Q>(std::integral_constant<Quantity, Q>) {
+    [[maybe_unused]] const auto move = [&]<Quantity Q>(std::integral_constant<Quantity, Q>) {
       if (k >= 0 && k < kInputVariables<Q>) move_variable<Q>(next, k, step);
       next += InputOf<Q>::kValues;
       k -= kInputVariables<Q>;

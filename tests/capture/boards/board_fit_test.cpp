@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+
 #include "support/board_view.hpp"
 
 namespace kinecal {
@@ -51,6 +54,37 @@ TEST(BoardFit, DropsTheCornersThatAreOffAndNoOthers) {
       for (const TargetCorner& corner : found) {
         EXPECT_LT((corner.pixel - view.pixel(corner.target)).norm(), 1.0);
       }
+    }
+  }
+}
+
+/// Paper whose upper right curls up by 15 mm, more than a polynomial of degree 3 follows.
+TEST(BoardFit, KeepsTheCornersOfAPaperThatCurlsAndDropsThoseThatAreOff) {
+  for (const bool fisheye : {false, true}) {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      BoardView view;
+      view.fisheye = fisheye;
+      view.focal = fisheye ? 300.0 : 600.0;
+      std::vector<TargetCorner> paper = board_corners(12, 12, 0.04);
+      for (TargetCorner& corner : paper) {
+        const double beyond =
+            std::max(0.0, (corner.target.x() + corner.target.y()) / 0.44 - 1.2) / 0.8;
+        corner.target.z() = -0.015 * beyond * beyond;
+      }
+      std::vector<TargetCorner> corners = view.see(paper, seed);
+      for (TargetCorner& corner : corners) corner.target.z() = 0.0;
+      EXPECT_GE(left_ids(view.camera(), corners).size(), corners.size() - 1)  // the outermost one
+          << (fisheye ? "fisheye" : "pinhole");
+      std::set<int> wrong;
+      for (const std::size_t tag : {16, 110, 130}) {  // four neighbours, as of a tag
+        for (const std::size_t i : {tag, tag + 1, tag + 12, tag + 13}) {
+          corners[i].pixel += Eigen::Vector2d(2.4, -3.2);
+          wrong.insert(corners[i].id);
+        }
+      }
+      const std::vector<int> left = left_ids(view.camera(), corners);
+      for (const int id : left) EXPECT_FALSE(wrong.contains(id)) << id;
+      EXPECT_GE(left.size(), corners.size() - wrong.size() - 1) << seed;
     }
   }
 }

@@ -151,6 +151,50 @@ TEST_F(ReadCsvPoses, WrongPosesAndColumnsAreErrorsThatSayWhatToWrite) {
   EXPECT_THAT(errors("table: corners.csv, ", "").front(), HasSubstr("has match, but no table"));
 }
 
+/// As many images as a log has, and as many columns as a machine has signals: each is looked up, not searched for.
+TEST_F(ReadCsvPoses, LargeTablesAreMatchedByTheirKeys) {
+  constexpr int kImages = 50'000;
+  std::string poses = "image,X,Y,Z,A,B,C\n", corners = "image,id,u,v\n";
+  for (int i = 0; i < kImages; ++i) {
+    poses += std::to_string(i) + ".png,1,2,3,0,0,0\n";
+    const std::string image = std::to_string(kImages - 1 - i) + ".png,";  // in another order
+    corners += image + "4," + std::to_string(i) + ",20\n" + image + "7,11,21\n";
+  }
+  write("corners.csv", corners);
+  const auto samples = read(poses, kPoses);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), static_cast<std::size_t>(kImages));
+  for (const int i : {0, 1, kImages / 2, kImages - 1}) {
+    const auto& seen = samples[static_cast<std::size_t>(i)].observation("camera")->features;
+    ASSERT_EQ(seen.size(), 2u);
+    EXPECT_EQ(seen[0].point.x(), kImages - 1 - i);
+    EXPECT_EQ(seen[1].id, 7);
+  }
+}
+
+TEST_F(ReadCsvSamples, ManyColumnsAreFoundByTheirNames) {
+  constexpr int kColumns = 20'000;
+  std::string header, row, joints, speeds;
+  for (int i = 0; i < kColumns; ++i) {
+    const std::string n = std::to_string(i);
+    header += (i > 0 ? ",q" : "q") + n + ",v" + n;
+    row += (i > 0 ? "," : "") + n + "," + n;
+    joints += "j" + n + ": q" + n + ", ";
+    speeds +=
+        "j" + std::to_string(kColumns - 1 - i) + ": v" + std::to_string(kColumns - 1 - i) + ", ";
+  }
+  const auto samples =
+      read(header + "\n" + row + "\n",
+           "joints: {unit: radians, columns: {" + joints +
+               "}}\nvelocities: {unit: "
+               "rad/s, columns: {" +
+               speeds + "}}\nobservations:\n - {sensor: arm, frame: smr, constant: [0, 0, 0]}\n");
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_EQ(samples[0].joint_positions.back(), kColumns - 1);
+  EXPECT_EQ(samples[0].joint_velocities[7], 7.0);
+}
+
 const char* const kMoving = R"(joints: {unit: degrees, columns: {pan: q1, tilt: q2}}
 sliding: {unit: metres, columns: {lift: l}}
 velocities: {unit: deg/s, columns: {tilt: dq2, pan: dq1}}

@@ -21,6 +21,7 @@ using test::kTourStart;
 using test::Recorder;
 using test::Tour;
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -216,6 +217,95 @@ TEST_F(RecordedViewsTest, DepthOfAnotherFrameIsAnErrorUnlessTheFrameIsNamed) {
   diagnostics_ = {};
   EXPECT_EQ(open({.path = path(), .frame = "optical"}).standstills(), 3U);
   EXPECT_THAT(diagnostics_.errors, IsEmpty());
+}
+
+/// A wall that a depth camera beside the image's sees at an angle: where the transform is known, points are on it.
+TEST_F(RecordedViewsTest, DepthOfAnotherCameraIsProjectedWhereItIsKnownWhereItStands) {
+  finders_.front().type = "CheckerboardFinder";
+  const Pose<double> housing_T_optical{exp(Vector3<double>(0.0, 0.1, 0.0)), {0.01, 0.0, 0.0}};
+  const Pose<double> housing_T_depth{exp(Vector3<double>(0.0, 0.13, 0.0)), {0.06, 0.0, 0.0}};
+  const Vector3<double> normal(0.2, 0.0, -1.0), on_wall(0.0, 0.0, 1.0);  // in depth_optical
+  CameraInfo own = small_camera();
+  own.p[0] = own.p[5] = 50.0;
+  Image<std::uint16_t> millimetres(64, 48);
+  for (int v = 0; v < 48; ++v) {
+    for (int u = 0; u < 64; ++u) {
+      const Vector3<double> ray((u - 32) / 50.0, (v - 24) / 50.0, 1.0);
+      millimetres(u, v) =
+          static_cast<std::uint16_t>(std::lround(1000.0 * normal.dot(on_wall) / normal.dot(ray)));
+    }
+  }
+  enum class Known { nowhere, tf, moving, urdf };
+  for (const Known known : {Known::nowhere, Known::tf, Known::moving, Known::urdf}) {
+    for (const Encoding encoding : {Encoding::cdr, Encoding::ros1}) {
+      const auto depth = [&](Recorder& to, Stamp stamp, double time) {
+        to.frame = "depth_optical";
+        to.camera_info("/depth/camera_info", stamp, own);
+        to.depth("/depth/image", stamp, millimetres);
+        to.frame = "optical";
+        if (known != Known::tf && known != Known::moving) return;
+        Pose<double> moved = housing_T_depth;
+        if (known == Known::moving) moved.translation.z() = 1e-3 * time;
+        to.transform("/tf_static", stamp, "housing", "/optical", housing_T_optical);
+        to.transform("/tf", stamp, "housing", "depth_optical", moved);
+      };
+      record({.encoding = encoding, .more = depth});
+      diagnostics_ = {};
+      RecordingOptions options;
+      if (known == Known::urdf) {
+        options.robot =
+            Robot("r", {{"a", JointType::fixed, "housing", "optical", housing_T_optical},
+                        {"b", JointType::fixed, "housing", "depth_optical", housing_T_depth}});
+      }
+      const RecordedViews recording = open(options);
+      if (known == Known::nowhere || known == Known::moving) {
+        EXPECT_THAT(diagnostics_.errors,
+                    ElementsAre(AllOf(HasSubstr("depth is not registered to the image"),
+                                      HasSubstr("knows where 'depth_optical' stands in 'optical' "
+                                                "(record tf and tf_static"))));
+        continue;
+      }
+      EXPECT_THAT(diagnostics_.errors, IsEmpty());
+      EXPECT_THAT(diagnostics_.notes, Contains(HasSubstr("from 50.0 mm and 1.72 deg away")));
+      const Pose<double> depth_T_optical = housing_T_depth.inverse() * housing_T_optical;
+      for (const RecordedView& seen : views_of(recording)) {
+        ASSERT_TRUE(seen.view) << seen.refusal;
+        const PointCloud& points = seen.view->points;
+        ASSERT_EQ(points.width, 64);
+        int count = 0;
+        for (int v = 0; v < 48; ++v) {
+          for (int u = 0; u < 64; ++u) {
+            const Vector3<double> p = points(u, v).cast<double>();
+            if (!p.allFinite()) continue;
+            ++count;
+            EXPECT_NEAR(normal.dot(depth_T_optical * p - on_wall), 0.0, 1e-3);
+            EXPECT_NEAR(p.x() / p.z(), (u - 32) / 60.0, 1e-6);
+          }
+        }
+        EXPECT_GT(count, 64 * 48 * 9 / 10);
+      }
+    }
+  }
+}
+
+TEST_F(RecordedViewsTest, DepthOfTheSameCameraMayBeSmallerThanItsImage) {
+  finders_.front().type = "CheckerboardFinder";
+  CameraInfo half = small_camera();
+  half.width = 32;
+  half.height = 24;
+  half.p = {30, 0, 15.75, 0, 0, 30, 11.75, 0, 0, 0, 1, 0};
+  const auto depth = [&](Recorder& to, Stamp stamp, double) {
+    to.camera_info("/depth/camera_info", stamp, half);
+    to.depth("/depth/image", stamp, Image<std::uint16_t>(32, 24, 1000));
+  };
+  record({.more = depth});
+  const RecordedViews recording = open();
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  for (const RecordedView& seen : views_of(recording)) {
+    ASSERT_TRUE(seen.view) << seen.refusal;
+    const Vector3<double> p = seen.view->points(47, 24).cast<double>();
+    EXPECT_LE((p - Vector3<double>(15.0 / 60.0, 0.0, 1.0)).norm(), 1e-6);
+  }
 }
 
 TEST_F(RecordedViewsTest, JointsThatScatterAtRestAreNamed) {

@@ -29,9 +29,10 @@ namespace {
 }
 
 /// Takes a smooth field off what a fit misses.
-[[nodiscard]] CornerFit without_smooth_field(const PlaneView& view, const CornerFit& from) {
+/// @param degree  of its polynomial
+[[nodiscard]] CornerFit without_smooth_field(const PlaneView& view, const CornerFit& from,
+                                             int degree) {
   constexpr int kPasses = 12;
-  const int degree = view.plane.size() >= kForCube ? 3 : 2;
   Eigen::Vector2d least = view.plane.front(), most = least;
   for (const Eigen::Vector2d& p : view.plane) least = least.cwiseMin(p), most = most.cwiseMax(p);
   const Eigen::Vector2d middle = 0.5 * (least + most);
@@ -57,11 +58,16 @@ namespace {
   return fit;
 }
 
-/// The fit with the lens that agrees best; with a smooth field if that is not enough.
+/// The fit with the lens that agrees best; with a smooth field if that is not enough: of a paper that curls or waves, or of
+/// a lens whose axis is not at the centre of the image.
 [[nodiscard]] CornerFit best_fit(const PlaneView& view, const CameraInfo& camera) {
-  CornerFit best = best_lens(view, camera);
-  if (!is_good(best) && view.plane.size() >= kForSquare) {
-    take_better(without_smooth_field(view, best), best);
+  // Four corners or more for each coefficient: fewer would follow a wrong one.
+  constexpr std::pair<int, std::size_t> kFields[] = {{2, 24}, {3, 40}, {4, 80}, {5, 120}};
+  const CornerFit lens = best_lens(view, camera);
+  CornerFit best = lens;
+  for (const auto& [degree, corners] : kFields) {
+    if (is_good(best) || view.plane.size() < corners) break;
+    take_better(without_smooth_field(view, lens, degree), best);
   }
   return best;
 }

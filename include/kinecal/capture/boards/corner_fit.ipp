@@ -18,8 +18,8 @@
 
 namespace kinecal::detail {
 
-inline constexpr double kSharpCorner = 0.15;  // what a good finder achieves, pixels
-inline constexpr std::size_t kFewest = 8, kForLens = 12, kForSquare = 24, kForCube = 40;  // corners
+inline constexpr double kSharpCorner = 0.15;              // what a good finder achieves, pixels
+inline constexpr std::size_t kFewest = 8, kForLens = 12;  // corners
 
 /// Maps pixels to those of a camera without distortion, and back.
 struct Straightening {

@@ -294,8 +294,9 @@ double floor_height(const Robot& robot, const ViewGoal& goal) {
 }
 
 std::vector<JointTarget> poses_with_view_of(const Robot& robot, const ViewGoal& goal, int count,
-                                            std::uint64_t seed) {
+                                            std::uint64_t seed, int give_up) {
   constexpr int kCandidates = 4, kTries = 40, kMore = 1000;  // per pose; in all
+  constexpr double kNear = 0.1;  // fault of a view: a tenth of the image
   const detail::ViewSearch view(robot, goal);
   std::mt19937_64 random(seed);
   detail::Places found, shares;
@@ -303,6 +304,7 @@ std::vector<JointTarget> poses_with_view_of(const Robot& robot, const ViewGoal& 
   best.size = std::numeric_limits<double>::infinity();
   for (int n = 0; n < kTries * count + kMore; ++n) {
     if (static_cast<int>(found.size()) >= kCandidates * count) break;
+    if (n > 0 && n == give_up && best.size > kNear) break;
     std::vector<double> q = view.anywhere(random);
     const detail::ViewFault fault = detail::search(view, q, random);
     if (fault.size < best.size) best = fault;

@@ -48,13 +48,15 @@ struct ViewGoal {
 [[nodiscard]] double floor_height(const Robot& robot, const ViewGoal& goal);
 
 /// Poses in which the camera sees the whole target, spread over the ranges of the joints.
-/// @param count  number of poses; fewer if no more are found
+/// @param count    number of poses; fewer if no more are found
+/// @param give_up  after so many starts if none came near a view; 0: never
 /// @returns      targets for the same joints, in an order with short paths
 /// @throws RobotError             if a link or joint does not exist
 /// @throws std::invalid_argument  if there is no point, no joint that moves camera against target,
 ///                                or the camera_info is impossible
 /// @throws std::runtime_error     if no pose is found; says what is wrong with the best one
 [[nodiscard]] std::vector<JointTarget> poses_with_view_of(const Robot& robot, const ViewGoal& goal,
-                                                          int count, std::uint64_t seed = 1);
+                                                          int count, std::uint64_t seed = 1,
+                                                          int give_up = 0);
 
 }  // namespace kinecal

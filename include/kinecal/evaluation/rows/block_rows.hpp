@@ -22,11 +22,16 @@ class BlockRows {
   using Views = TermViews<S>;                                     ///< one view per sensor
   using Rows = FeatureRows<S, kSize, static_cast<int>(kBodies)>;  ///< the result
 
-  /// One if all sensors observed feature i, else zero; lane by lane.
+  /// One if all sensors observed feature i, or the sample has the conditions of a block without a sensor; else zero;
+  /// lane by lane.
   [[nodiscard]] static S present(const Views& views, std::size_t i) {
-    S all = views[0].observation().usable(i);
-    for (std::size_t s = 1; s < kBodies; ++s) all *= views[s].observation().usable(i);
-    return all;
+    if constexpr (kBodies == 0) {
+      return views.conditions[kConditionsOfBlock<B>.size()];
+    } else {
+      S all = views[0].observation().usable(i);
+      for (std::size_t s = 1; s < kBodies; ++s) all *= views[s].observation().usable(i);
+      return all;
+    }
   }
 
   /// Residual of feature i, with derivatives if kDerivatives is true.
@@ -119,8 +124,10 @@ class BlockRows {
     if constexpr (!kDerivatives) {
       rows.residual = call(block, values, views, i);
     } else {
-      std::array<Vector3<S>, 4> moved;
-      if (at == Linearization::error_free) take_residual_away(block, views, i, values, moved);
+      [[maybe_unused]] std::array<Vector3<S>, 4> moved;
+      if constexpr (kBodies > 0) {
+        if (at == Linearization::error_free) take_residual_away(block, views, i, values, moved);
+      }
       const auto r = call_jets(block, values, views, i);
       rows.residual = values_of(r);
       unrolled<kBodies>([&](auto s) { add_sensor<s>(views[s], i, values[s], r, rows); });

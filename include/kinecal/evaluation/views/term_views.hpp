@@ -44,7 +44,9 @@ struct TermViews {
   std::span<const FeatureRun> runs;                         ///< of the features, in their order
   /// Of each feature, lane by lane: 1 / sigma, or 0 if it has none of its own; nullptr: none has one.
   const S* inverse_sigmas = nullptr;
-  const S* conditions = nullptr;  ///< those that the block takes, lane by lane
+  /// Those that the block takes, lane by lane; after those of a block without a sensor: one, or zero in a lane without a
+  /// sample.
+  const S* conditions = nullptr;
   std::size_t conditions_step =
       0;  ///< from a feature's to the next one's; zero: they are the sample's
 

@@ -14,8 +14,9 @@ KINECAL_INLINE std::vector<FeatureRun> feature_runs(const Term& term, const Samp
     chains.push_back(&layout.sensors[static_cast<std::size_t>(s)]->chain);
   }
   std::vector<FeatureRun> runs;
-  // A plane through all features counts as one.
-  const std::size_t features = term.pairs_features() ? chains[0]->size() : 1;
+  // A plane through all features counts as one, and so does a residual without a sensor.
+  const bool is_one = chains.empty() || !term.pairs_features();
+  const std::size_t features = is_one ? 1 : chains[0]->size();
   for (std::size_t i = 0; i < features; ++i) {
     BodyChains of_feature{};
     for (std::size_t s = 0; s < chains.size(); ++s) of_feature[s] = (*chains[s])[i];

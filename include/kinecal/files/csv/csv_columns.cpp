@@ -4,23 +4,31 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <limits>
 
 namespace kinecal::detail {
 
-std::optional<std::size_t> CsvColumns::find(const CsvColumn& column) {
-  auto same = std::find(header_.begin(), header_.end(), column.name);
-  if (same == header_.end() && column.name.size() > 1 && column.name.starts_with('#')) {
-    same =
-        std::find(header_.begin(), header_.end(), column.name.substr(1));  // the mark of a comment
+CsvColumns::CsvColumns(const CsvTable& table, Diagnostics& diagnostics)
+    : header_(table.header.cells),
+      header_text_(table.header_text()),
+      columns_(table.columns),
+      diagnostics_(diagnostics) {
+  for (std::size_t i = 0; i < header_.size(); ++i) {
+    if (!places_.try_emplace(header_[i], i).second) repeated_.insert(header_[i]);
   }
-  if (same != header_.end()) {
-    if (std::find(same + 1, header_.end(), *same) != header_.end()) {
+}
+
+std::optional<std::size_t> CsvColumns::find(const CsvColumn& column) {
+  auto same = places_.find(column.name);
+  if (same == places_.end() && column.name.size() > 1 && column.name.starts_with('#')) {
+    same = places_.find(column.name.substr(1));  // the mark of a comment
+  }
+  if (same != places_.end()) {
+    if (repeated_.count(same->first) > 0) {
       error(column, "occurs twice in the table; give its number, from 1");
     }
-    return same - header_.begin();
+    return same->second;
   }
   std::size_t number = 0;
   const char* const end = column.name.data() + column.name.size();

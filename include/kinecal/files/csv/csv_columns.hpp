@@ -3,7 +3,9 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "kinecal/files/csv/csv_mapping.hpp"
@@ -16,11 +18,7 @@ namespace kinecal::detail {
 /// A table whose columns are found by name or number.
 class CsvColumns {
  public:
-  CsvColumns(const CsvTable& table, Diagnostics& diagnostics)
-      : header_(table.header.cells),
-        header_text_(table.header_text()),
-        columns_(table.columns),
-        diagnostics_(diagnostics) {}
+  CsvColumns(const CsvTable& table, Diagnostics& diagnostics);
 
   /// The index of a column, from 0; an error and nullopt if there is no such column.
   [[nodiscard]] std::optional<std::size_t> find(const CsvColumn& column);
@@ -29,7 +27,9 @@ class CsvColumns {
   void error(const CsvColumn& column, const std::string& what);
 
   std::vector<std::string> header_;
-  std::string header_text_;  ///< for messages
+  std::unordered_map<std::string, std::size_t> places_;  ///< by name: the first column of it
+  std::set<std::string> repeated_;                       ///< names of several columns
+  std::string header_text_;                              ///< for messages
   std::size_t columns_;
   Diagnostics& diagnostics_;
 };

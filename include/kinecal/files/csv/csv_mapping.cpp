@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -276,11 +278,11 @@ void read_csv_joints(ConfigMap& map, const std::string& key, const CsvUnitNames&
   if (!columns)
     joints->error(joints->place(), "columns is missing: {name of a joint: column, ...}");
   if (columns) {
+    std::set<std::string> names;
+    for (const CsvJoint& known : all) names.insert(known.name);
     for (const ConfigEntry& entry : columns->entries()) {
-      for (const CsvJoint& known : all) {
-        if (known.name == entry.key) {
-          columns->error(entry.place, "joint '" + entry.key + "' occurs twice");
-        }
+      if (!names.insert(entry.key).second) {
+        columns->error(entry.place, "joint '" + entry.key + "' occurs twice");
       }
       all.push_back({entry.key, read_csv_sum(*columns, entry.value, entry.place), unit});
     }
@@ -321,25 +323,26 @@ void read_csv_velocities(ConfigMap& file, CsvMapping& mapping) {
   if (velocities.empty()) return;
   const ConfigEntry* first = file.peek("velocities");
   const SourceLocation place = (first != nullptr ? first : file.peek("sliding_velocities"))->place;
+  std::map<std::string, CsvJoint*> by_name;
+  for (CsvJoint& velocity : velocities) by_name.try_emplace(velocity.name, &velocity);
   std::vector<std::string> missing;
   for (const CsvJoint& joint : mapping.joints) {
-    const auto found = std::find_if(velocities.begin(), velocities.end(),
-                                    [&](const CsvJoint& v) { return v.name == joint.name; });
-    if (found == velocities.end()) {
+    const auto found = by_name.find(joint.name);
+    if (found == by_name.end()) {
       missing.push_back("'" + joint.name + "'");
       continue;
     }
-    mapping.velocities.push_back(std::move(*found));
-    velocities.erase(found);
+    mapping.velocities.push_back(*found->second);
+    by_name.erase(found);
   }
   if (!missing.empty()) {
     file.error(place, fmt::format("velocities: no column for joint{} {}; give all joints or none",
                                   missing.size() == 1 ? "" : "s", fmt::join(missing, ", ")));
   }
-  for (const CsvJoint& velocity : velocities) {
-    const SourceLocation where = velocity.columns.empty() ? place : velocity.columns.front().place;
-    file.error(where, fmt::format("velocities: joint '{}' has no position under joints or sliding",
-                                  velocity.name));
+  for (const auto& [name, velocity] : by_name) {
+    const CsvSum& columns = velocity->columns;
+    file.error(columns.empty() ? place : columns.front().place,
+               fmt::format("velocities: joint '{}' has no position under joints or sliding", name));
   }
 }
 

@@ -311,11 +311,12 @@ class CsvLayout {
         std::find(groups.cells.begin(), groups.cells.end(), "ID") != groups.cells.end();
     if (groups.is_comment || has_ids) return;  // of Motive: names are above them
     const std::vector<std::string> names = header.cells;
+    std::map<std::string_view, int> columns;  // that have a name
+    for (const std::string& name : names) ++columns[name];
     std::string group;
     for (std::size_t c = 0; c < names.size() && c < groups.cells.size(); ++c) {
       if (!groups.cells[c].empty()) group = groups.cells[c];
-      const bool is_shared = std::count(names.begin(), names.end(), names[c]) > 1;
-      if (is_shared && !group.empty())
+      if (columns[names[c]] > 1 && !group.empty())
         header.cells[c] = group + (names[c].empty() ? "" : " ") + names[c];
     }
   }

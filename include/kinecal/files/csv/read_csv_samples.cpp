@@ -64,9 +64,11 @@ class CsvSamples {
     for (const CsvCondition& condition : mapping.conditions) {
       conditions_.push_back(find(condition.columns));
     }
+    std::map<std::string, std::size_t> places;
     for (const CsvObservation& observation : mapping.observations) {
       if (!observation.table.empty()) continue;
       observations_.push_back(&observation);
+      sensors_.push_back(places.try_emplace(observation.sensor, places.size()).first->second);
       frames_.push_back(find(observation.frame_column));
       ids_.push_back(find(observation.id_columns));
       for (const CsvSum& pose : observation.poses) {
@@ -111,7 +113,12 @@ class CsvSamples {
     }
     std::size_t next = 0, next_pose = 0;
     for (std::size_t i = 0; i < observations_.size(); ++i) {
-      add_features(row, *observations_[i], frames_[i], ids_[i], next, next_pose, sample);
+      const CsvObservation& observation = *observations_[i];
+      if (sensors_[i] == sample.observations.size()) {
+        sample.observations.push_back({observation.sensor, {}});
+      }
+      add_features(row, observation, frames_[i], ids_[i], next, next_pose,
+                   sample.observations[sensors_[i]].features);
     }
     if (!complete) return std::nullopt;
     return sample;
@@ -229,39 +236,34 @@ class CsvSamples {
     }
   }
 
-  /// Adds the features of one entry to the observation of its sensor.
+  /// Adds the features of one entry to those of its sensor.
   /// @param next, next_pose  indices in points_ and object_poses_ of its first one; advanced past its last one
   void add_features(const CsvRow& row, const CsvObservation& observation, const Indices& column,
-                    const Indices& ids, std::size_t& next, std::size_t& next_pose, Sample& sample) {
+                    const Indices& ids, std::size_t& next, std::size_t& next_pose,
+                    std::vector<Feature>& features) {
     const std::string frame = column.empty() ? observation.frame : text(row, column.front());
-    auto seen = std::find_if(sample.observations.begin(), sample.observations.end(),
-                             [&](const Observation& o) { return o.sensor == observation.sensor; });
-    if (seen == sample.observations.end()) {
-      seen = sample.observations.insert(seen, Observation{observation.sensor, {}});
-    }
-    const std::size_t before = seen->features.size();
-    for (const auto& point : observation.constants) seen->features.push_back({frame, point});
+    const std::size_t before = features.size();
+    for (const auto& point : observation.constants) features.push_back({frame, point});
     for (const auto& point : observation.points) {
       Vector3<double> p;
       for (Eigen::Index k = 0; k < 3; ++k) p(k) = value(row, points_[next++], observation.unit);
       if (!observation.unit.millimetres && !point[2].empty()) {
         doubt(row, "sensor '" + observation.sensor + "'", p.cwiseAbs().maxCoeff(), 100.0, "metres");
       }
-      seen->features.push_back({frame, p});
+      features.push_back({frame, p});
     }
     for (const Pose<double>& pose : observation.constant_poses) {
-      seen->features.push_back({frame, pose.translation, pose.rotation});
+      features.push_back({frame, pose.translation, pose.rotation});
     }
     for (std::size_t i = 0; i < observation.poses.size(); ++i) {
       const auto pose =
           pose_of(row, observation.form, object_poses_[next_pose++], observation.sensor);
       const Vector3<double> not_seen =
           Vector3<double>::Constant(std::numeric_limits<double>::quiet_NaN());
-      seen->features.push_back(
-          {frame, pose ? pose->translation : not_seen,
-           pose ? pose->rotation : Matrix3<double>(Matrix3<double>::Identity())});
+      features.push_back({frame, pose ? pose->translation : not_seen,
+                          pose ? pose->rotation : Matrix3<double>(Matrix3<double>::Identity())});
     }
-    add_ids(row, observation.ids, ids, before, seen->features);
+    add_ids(row, observation.ids, ids, before, features);
   }
 
   /// Sets the ids of the features from `first` on.  A feature with neither point nor id was not
@@ -350,6 +352,7 @@ class CsvSamples {
 
   const CsvMapping& mapping_;
   std::vector<const CsvObservation*> observations_;  ///< those in this table
+  std::vector<std::size_t> sensors_;                 ///< their places in a sample
   CsvColumns columns_;
   const CsvRow& units_;
   std::string file_;
@@ -430,15 +433,20 @@ void add_own_table(const CsvMapping& mapping, const CsvObservation& observation,
   const std::string text = read_text_file(observation.table);
   const CsvRead read = read_csv_rows(text, own, observation.match, observation.table, diagnostics);
   if (read.cells.size() != (observation.match.empty() ? 0 : read.samples.size())) return;
+  std::map<std::string, std::vector<std::size_t>> rows;  // by what they match; "" without
+  for (std::size_t i = 0; i < read.samples.size(); ++i) {
+    rows[read.cells.empty() ? "" : read.cells[i]].push_back(i);
+  }
   std::set<std::string> used;
   for (std::size_t s = 0; s < samples.size(); ++s) {
+    if (!read.cells.empty() && cells.size() <= s) continue;
+    const auto found = rows.find(read.cells.empty() ? "" : cells[s]);
+    if (found == rows.end()) continue;
+    used.insert(found->first);
     Observation all{observation.sensor, {}, {}};
-    for (std::size_t i = 0; i < read.samples.size(); ++i) {
-      if (!read.cells.empty() && (cells.size() <= s || read.cells[i] != cells[s])) continue;
-      if (!read.cells.empty()) used.insert(read.cells[i]);
-      for (const Feature& feature : read.samples[i].observations.front().features) {
-        all.features.push_back(feature);
-      }
+    for (const std::size_t i : found->second) {
+      const std::vector<Feature>& features = read.samples[i].observations.front().features;
+      all.features.insert(all.features.end(), features.begin(), features.end());
     }
     if (all.features.empty()) continue;
     const auto same = [&](const Observation& o) { return o.sensor == all.sensor; };

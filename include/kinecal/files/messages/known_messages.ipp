@@ -1,5 +1,5 @@
 // The messages that kinecal reads and writes, as ROS 1 and ROS 2 define them.
-// Source: packages std_msgs, geometry_msgs, sensor_msgs, robot_calibration_msgs.
+// Source: packages std_msgs, geometry_msgs, sensor_msgs, tf2_msgs, robot_calibration_msgs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -105,6 +105,24 @@ inline constexpr std::array kKnownMessages = {
                  "float64 x\n"
                  "float64 y\n"
                  "float64 z\n"},
+    KnownMessage{"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n",
+                 "94810edda583a504dfda3829e70d7eec"},
+    KnownMessage{"geometry_msgs/TransformStamped",
+                 "std_msgs/Header header\n"
+                 "string child_frame_id\n"
+                 "Transform transform\n"},
+    KnownMessage{"geometry_msgs/Transform",
+                 "Vector3 translation\n"
+                 "Quaternion rotation\n"},
+    KnownMessage{"geometry_msgs/Vector3",
+                 "float64 x\n"
+                 "float64 y\n"
+                 "float64 z\n"},
+    KnownMessage{"geometry_msgs/Quaternion",
+                 "float64 x\n"
+                 "float64 y\n"
+                 "float64 z\n"
+                 "float64 w\n"},
     KnownMessage{"std_msgs/Header",
                  "builtin_interfaces/Time stamp\n"
                  "string frame_id\n"},

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/tools/detect/recorded_views.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -23,6 +26,7 @@
 #include "kinecal/files/messages/decode.hpp"
 #include "kinecal/files/messages/known_definitions.hpp"
 #include "kinecal/files/messages/view_message.hpp"
+#include "kinecal/files/recordings/fixed_frames.hpp"
 #include "kinecal/files/recordings/read_bag.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/text/counted.hpp"
@@ -220,11 +224,19 @@ struct RawView {
   return parts;
 }
 
+/// What a topic's images are of, by its name: image_rect, image_rect_color/compressed.
+[[nodiscard]] inline ImageKind kind_of_images(const std::string& topic) {
+  return topic.find("image_rect") == std::string::npos ? ImageKind::automatic
+                                                       : ImageKind::rectified;
+}
+
 /// Decodes a view.
+/// @param depth  the camera of its depth, if it is another one
 /// @param frame  of the camera; empty: from the messages
 /// @throws std::runtime_error  naming the topic, if a message cannot be read
 [[nodiscard]] inline View decoded(const RawView& raw, const ViewTopics& topics,
                                   const std::optional<CameraInfo>& camera,
+                                  const std::optional<RangeCamera>& depth,
                                   const std::string& frame) {
   View view;
   view.stamp = raw.stamp;
@@ -238,6 +250,9 @@ struct RawView {
         view.image = gray_image(message);
       } else if (part.topic == topics.cloud) {
         read_cloud(message, view.points, view.image);
+      } else if (camera && depth) {
+        view.points =
+            registered_points(depth_image(message), *depth, *camera, kind_of_images(topics.image));
       } else if (camera) {
         view.points = points_of(depth_image(message), *camera);
       } else {
@@ -449,37 +464,110 @@ void report_messages(const RecordedSurvey& survey, const std::vector<ViewTopics>
   return text.str();
 }
 
-/// An error if the depth beside an image is of another camera: a corner of the image is at another
-/// pixel there.
-void check_registered(const RecordedSurvey& survey, const std::vector<ViewTopics>& cameras,
-                      const RecordingOptions& options, Diagnostics& diagnostics) {
-  for (const ViewTopics& camera : cameras) {
-    if (camera.image.empty() || camera.depth.empty()) continue;
-    const std::string &depth = survey.topics.at(camera.depth).frame,
-                      &image = survey.topics.at(camera.image).frame;
-    std::string differs, remedy;
-    if (options.frame.empty() && !depth.empty() && !image.empty() && !same_frame(depth, image)) {
-      differs = ", frame '" + printable(depth) + "' instead of '" + printable(image) + "'";
-      remedy = "; if both are of one camera, name its frame with --frame";
-    }
-    const CameraInfo* of_depth = own_camera(survey, camera.depth);
-    const CameraInfo* of_image = own_camera(survey, camera.image);
-    if (options.camera) of_image = &*options.camera;
-    if (of_depth != nullptr && of_image != nullptr) {
-      const std::string settings = differing_settings(*of_depth, *of_image);
-      if (!settings.empty()) remedy.clear();
-      differs += settings;
-    }
-    if (differs.empty()) continue;
-    diagnostics.error({options.path, 0},
-                      "topic '" + printable(camera.depth) +
-                          "': its depth is not registered to the image of topic '" +
-                          printable(camera.image) +
-                          "' but of another camera: " + differs.substr(2) +
-                          "; record aligned depth (realsense2_camera: align_depth.enable; "
-                          "depth_image_proc: register), or use a finder of pixels (2d)" +
-                          remedy);
+/// Whether two cameras are one that delivers images of two sizes.
+[[nodiscard]] bool is_same_scaled(const CameraInfo& a, const CameraInfo& b) {
+  CameraInfo scaled = a;
+  const double scale = static_cast<double>(b.width) / std::max(a.width, 1);
+  for (double& number : scaled.k) number *= scale;
+  for (double& number : scaled.p) number *= scale;
+  scaled.width = b.width;
+  scaled.height = static_cast<int>(std::lround(a.height * scale));
+  return differing_settings(scaled, b).empty();
+}
+
+/// A camera of depth beside an image, and how it differs from that of the image.
+struct DepthBeside {
+  std::string frame, image_frame;
+  const CameraInfo *info = nullptr, *image_info = nullptr;  ///< nullptr: not recorded
+  bool other_frame = false;
+  std::string settings;  ///< that differ
+
+  DepthBeside(const RecordedSurvey& survey, const ViewTopics& camera,
+              const RecordingOptions& options)
+      : frame(survey.topics.at(camera.depth).frame),
+        image_frame(survey.topics.at(camera.image).frame),
+        info(own_camera(survey, camera.depth)),
+        image_info(options.camera ? &*options.camera : own_camera(survey, camera.image)) {
+    other_frame = options.frame.empty() && !frame.empty() && !image_frame.empty() &&
+                  !same_frame(frame, image_frame);
+    if (info != nullptr && image_info != nullptr) settings = differing_settings(*info, *image_info);
   }
+
+  [[nodiscard]] bool is_registered() const { return !other_frame && settings.empty(); }
+
+  [[nodiscard]] std::string differs() const {
+    const std::string frames = ", frame '" + frame + "' instead of '" + image_frame + "'";
+    return ((other_frame ? frames : "") + settings).substr(2);
+  }
+
+  /// The camera, if it is known where it stands.
+  [[nodiscard]] std::optional<RangeCamera> camera(const FixedFrames& frames) const {
+    if (info == nullptr || image_info == nullptr) return std::nullopt;
+    if (other_frame) {
+      const auto pose = frames.pose(image_frame, frame);
+      return pose ? std::optional(RangeCamera{*info, {}, *pose}) : std::nullopt;
+    }
+    return is_same_scaled(*info, *image_info) ? std::optional(RangeCamera{*info}) : std::nullopt;
+  }
+
+  /// What projecting the depth into the image would need, and other remedies.
+  /// @param topics  of the camera
+  [[nodiscard]] std::string remedy(const ViewTopics& topics) const {
+    std::string needs;
+    for (const auto& [camera_info, topic] :
+         {std::pair(info, topics.depth), std::pair(image_info, topics.image)}) {
+      if (camera_info == nullptr) needs += ", topic '" + camera_info_beside(topic) + "'";
+    }
+    needs += ", where '" + frame + "' stands in '" + image_frame +
+             "' (record tf and tf_static, or give the URDF with --urdf)";
+    return (other_frame ? "; kinecal projects the depth into the image if it knows " +
+                              printable(needs.substr(2))
+                        : "") +
+           (settings.empty() && other_frame
+                ? "; if both are of one camera, name its frame with --frame"
+                : "");
+  }
+};
+
+/// The cameras of depth that is not registered to the image: it is projected into it.  An error where that is not
+/// possible, because a corner of the image is at another pixel there.
+[[nodiscard]] std::vector<std::optional<RangeCamera>> depth_cameras(
+    const RecordedSurvey& survey, const std::vector<ViewTopics>& cameras,
+    const RecordingOptions& options, Diagnostics& diagnostics) {
+  std::vector<std::optional<RangeCamera>> depths(cameras.size());
+  std::optional<FixedFrames> frames;  // read if needed
+  for (std::size_t c = 0; c < cameras.size(); ++c) {
+    const ViewTopics& camera = cameras[c];
+    if (camera.image.empty() || camera.depth.empty()) continue;
+    const DepthBeside beside(survey, camera, options);
+    if (beside.is_registered()) continue;
+    if (!frames) {
+      frames = recorded_frames(options.path);
+      if (options.robot) frames->add(*options.robot);
+    }
+    depths[c] = beside.camera(*frames);
+    const std::string what = "topic '" + printable(camera.depth) +
+                             "': its depth is not registered to the image of topic '" +
+                             printable(camera.image) +
+                             "' but of another camera: " + printable(beside.differs());
+    if (!depths[c]) {
+      diagnostics.error({options.path, 0},
+                        what +
+                            "; record aligned depth (realsense2_camera: align_depth.enable; "
+                            "depth_image_proc: register), or use a finder of pixels (2d)" +
+                            beside.remedy(camera));
+      continue;
+    }
+    depths[c]->image = kind_of_images(camera.depth);
+    const Pose<double>& pose = depths[c]->camera_T_depth;
+    diagnostics.note(
+        {options.path, 0},
+        fmt::format("{}; it is projected into the image, from {:.1f} mm and {:.2f} deg "
+                    "away",
+                    what, 1e3 * pose.translation.norm(),
+                    log(pose.rotation).norm() * 180.0 / std::numbers::pi));
+  }
+  return depths;
 }
 
 /// Whether stamps of a camera and of joints are of different clocks.  A message may be recorded late,
@@ -649,7 +737,9 @@ RecordedViews::RecordedViews(RecordingOptions options, const std::vector<Capture
     choose_cameras(finders, own);
     detail::report_messages(*survey_, cameras_, options_.path, own);
   }
-  if (own.errors.empty()) detail::check_registered(*survey_, cameras_, options_, own);
+  if (own.errors.empty()) {
+    depths_ = detail::depth_cameras(*survey_, cameras_, options_, own);
+  }
   if (own.errors.empty()) detail::check_clocks(*survey_, cameras_, options_.path, own);
   if (own.errors.empty()) {
     times_ = in_motion() ? detail::find_intervals(*survey_, cameras_, options_, own)
@@ -748,7 +838,7 @@ RecordedView RecordedViews::view(const RecordedStandstill& standstill, std::size
   std::string failure = nothing_in(topics);
   for (const auto& raw : standstill.views.at(camera)) {
     try {
-      views.push_back(detail::decoded(*raw, topics, settings, options_.frame));
+      views.push_back(detail::decoded(*raw, topics, settings, depths_.at(camera), options_.frame));
     } catch (const std::runtime_error& error) {
       failure = error.what();
     }

@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/capture/registered_points.hpp"
+#include "kinecal/kinematics/robot.hpp"
 #include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/tools/detect/joint_tracks.hpp"
 #include "kinecal/tools/detect/view_topics.hpp"
@@ -32,6 +34,7 @@ struct RecordingOptions {
   std::string depth = {};                 ///< topic of the depth for images
   std::string frame = {};                 ///< of the camera; empty: from the messages
   std::optional<CameraInfo> camera = {};  ///< replaces camera_info, of the only camera
+  std::optional<Robot> robot = {};        ///< its fixed joints are where frames are that tf lacks
   SettleOptions settle = {};              ///< when joints stand still
   Stamp every = {};  ///< length of the intervals that give a view each, whether the robot moves or
                      ///< not; zero: each standstill gives one
@@ -99,6 +102,8 @@ class RecordedViews {
   RecordingOptions options_;
   std::unique_ptr<detail::RecordedSurvey> survey_;
   std::vector<ViewTopics> cameras_;
+  std::vector<std::optional<RangeCamera>>
+      depths_;                          ///< of each camera: its depth, if of another one
   std::vector<std::size_t> camera_of_;  ///< of each finder
   std::vector<Standstill> times_;
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -33,6 +34,14 @@ namespace kinecal::detail {
 /// The tags of a target that has some.
 [[nodiscard]] inline TagGridShape tags_of(const SimulatedTarget& target) {
   return target.type == "aprilgrid" ? kKalibrTags : kPlainTags;
+}
+
+/// Fills in the default size of a board.
+inline void complete(SimulatedTarget& target) {
+  const bool tags = has_tags(target);
+  if (target.columns == 0) target.columns = tags ? 4 : 6;
+  if (target.rows == 0) target.rows = tags ? 3 : 5;
+  if (target.size == 0.0) target.size = tags ? 0.04 : 0.025;
 }
 
 /// Width and height of a board with its margin, metres.
@@ -79,7 +88,8 @@ inline void set_middle(SimulatedTarget& target, const Pose<double>& link_T_middl
 inline constexpr double kBelowFloor = 0.01;
 
 /// The goal of a view of a target.
-inline void set_goal(SimulationPlan& plan) {
+/// @param scale  of its distances: less than 1 for a small robot
+inline void set_goal(SimulationPlan& plan, double scale = 1.0) {
   const SimulatedTarget& target = plan.target;
   const SimulatedCamera& camera = plan.setup.camera;
   ViewGoal& goal = plan.goal;
@@ -92,12 +102,13 @@ inline void set_goal(SimulationPlan& plan) {
   goal.front = -middle_of(target).rotation.col(2);
   constexpr double kNear = 0.2, kFar = 2.0, kFarFloor = 3.0, kGap = 0.05;  // metres
   constexpr double kBoard = 0.35, kLeds = 0.03;                            // of the image's width
-  goal.nearest = camera.has_depth ? camera.nearest + kGap : kNear;
+  goal.nearest = camera.has_depth ? camera.nearest + kGap : scale * kNear;
   goal.farthest = target.type == "ground" ? kFarFloor : kFar;
   if (camera.has_depth) goal.farthest = std::min(goal.farthest, camera.farthest);
   goal.least_size = is_board(target) ? kBoard : kLeds;
   if (target.type == "ground") goal.most_angle = 70.0 * std::numbers::pi / 180.0;
   goal.margin = 0.12;  // the true robot points elsewhere than its URDF
+  goal.radius = scale * ViewGoal{}.radius;
   goal.ground = floor_height(plan.setup.robot, goal) - kBelowFloor;
 }
 
@@ -109,15 +120,17 @@ inline void set_goal(SimulationPlan& plan) {
 }
 
 /// Candidate places of a target, most usual first: link_T_middle.
+/// @param scale  as of set_goal()
 [[nodiscard]] inline std::vector<Pose<double>> usual_places(const Robot& robot,
-                                                            const SimulationPlan& plan) {
+                                                            const SimulationPlan& plan,
+                                                            double scale) {
   const Vector3<double> x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   std::vector<Pose<double>> places;
   if (plan.target.link != plan.setup.base) {  // in a gripper
     constexpr double kOnTop = 0.04;           // metres
     for (const Vector3<double>& front :
          {z, Vector3<double>(-x), Vector3<double>(-z), y, Vector3<double>(-y), x}) {
-      places.push_back(facing(kOnTop * front, front));
+      places.push_back(facing(scale * kOnTop * front, front));
     }
     return places;
   }
@@ -133,31 +146,54 @@ inline void set_goal(SimulationPlan& plan) {
 }
 
 /// Places a target where the camera can see it, and sets the goal.
-/// @throws InputError  if there is no such place
-inline void place_target(SimulationPlan& plan) {
-  if (plan.target.has_pose) {
-    set_goal(plan);
-    return;
-  }
+/// @param scale    as of set_goal()
+/// @param give_up  as of poses_with_view_of()
+/// @returns  why there is no such place; empty if there is one
+[[nodiscard]] inline std::string why_no_place(SimulationPlan& plan, double scale, int give_up) {
   constexpr int kTrial = 3;
+  constexpr std::uint64_t kSeed = 1;
   std::string why;
-  for (const Pose<double>& place : usual_places(plan.setup.robot, plan)) {
+  for (const Pose<double>& place : usual_places(plan.setup.robot, plan, scale)) {
     try {
       set_middle(plan.target, place);
-      set_goal(plan);
+      set_goal(plan, scale);
       if (plan.target.type == "ground") {
         set_middle(plan.target, Pose<double>{Matrix3<double>::Identity(),
                                              {0.0, 0.0, plan.goal.ground + kBelowFloor}} *
                                     place);
-        set_goal(plan);
+        set_goal(plan, scale);
       }
-      if (poses_with_view_of(plan.setup.robot, plan.goal, kTrial).size() == kTrial) return;
+      if (poses_with_view_of(plan.setup.robot, plan.goal, kTrial, kSeed, give_up).size() == kTrial)
+        return "";
       why = "few poses in which '" + plan.goal.camera + "' sees the target on '" +
             plan.goal.target + "'";
     } catch (const std::runtime_error& e) {
       why = e.what();
     }
   }
+  return why;
+}
+
+/// Places a target where the camera can see it, and sets the goal.  A board whose size is not given is made smaller for a
+/// robot whose arm is too short for it.
+/// @throws InputError  if there is no such place
+inline void place_target(SimulationPlan& plan) {
+  const double given = plan.target.size;
+  complete(plan.target);
+  if (plan.target.has_pose) {
+    set_goal(plan);
+    return;
+  }
+  constexpr int kGiveUp = 100;
+  const double usual = plan.target.size;
+  for (const double scale : {1.0, 0.5, 0.25}) {
+    if (scale < 1.0 && (given > 0.0 || !is_board(plan.target))) break;
+    plan.target.size = scale * usual;
+    if (why_no_place(plan, scale, kGiveUp).empty()) return;
+  }
+  plan.target.size = usual;
+  const std::string why = why_no_place(plan, 1.0, 0);
+  if (why.empty()) return;
   throw InputError(why +
                    "; give its place in the scene: target: {link: LINK, xyz: [x, y, z], rpy: "
                    "[r, p, y]}");

@@ -256,14 +256,6 @@ void set_noise(SimulationPlan& plan) {
   return make_chain(robot, a, b, {}).joints.empty();
 }
 
-/// Fills in the default size of a board.
-void complete(SimulatedTarget& target) {
-  const bool tags = has_tags(target);
-  if (target.columns == 0) target.columns = tags ? 4 : 6;
-  if (target.rows == 0) target.rows = tags ? 3 : 5;
-  if (target.size == 0.0) target.size = tags ? 0.04 : 0.025;
-}
-
 /// The answers for `kinecal init` that lead to this simulation.
 [[nodiscard]] InitAnswers answers_of(const Robot& robot, SimulationPlan& plan) {
   InitAnswers answers;
@@ -389,7 +381,6 @@ SimulationPlan read_simulation(const Robot& robot, const std::string& path,
   if (seed != 0) plan.setup.seed = seed;
   if (!diagnostics.errors.empty()) return plan;
   if (config != nullptr && !config->steps.empty()) detail::take_models(*config, plan);
-  detail::complete(plan.target);
   const InitAnswers answers = detail::answers_of(robot, plan);
   plan.setup.base = answers.base;
   plan.target_frame = needs_target_frame(answers.target) ? answers.target_frame : plan.target.link;

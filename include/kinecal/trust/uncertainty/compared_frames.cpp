@@ -49,7 +49,7 @@ std::optional<std::pair<FrameOnRobot, FrameOnRobot>> compared_frames(
     const AnyProblem& problem, std::span<const Sample> samples) {
   for (int t = 0; t < problem.num_terms(); ++t) {
     const std::vector<int>& sensors = problem.term(t).sensors;
-    if (problem.samples_of(t) == 0) continue;
+    if (sensors.empty() || problem.samples_of(t) == 0) continue;
     FrameOnRobot one = detail::frame_of_features(problem, sensors[0], samples),
                  other{problem.base()};
     if (sensors.size() > 1) {
