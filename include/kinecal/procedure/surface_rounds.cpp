@@ -158,8 +158,9 @@ struct RoundManner {
   double gate = kWidest;            ///< metres
   std::optional<double> huber = {};  ///< metres, of a loss in place of the configured one
   int rounds = 1;                   ///< at most
-  double tolerance = 1e-8;          ///< relative fall of the cost at which rounds end
+  double tolerance = 1e-6;          ///< relative fall of the cost at which rounds end
   bool only_front = false;          ///< a point on the far side of a link counts as if beyond the gate
+  std::set<int> held = {};          ///< table indices of parameters that keep their values
 };
 
 /// A state of the rounds: what fits the values.
@@ -185,15 +186,18 @@ class SurfaceRounds {
     const std::unique_ptr<AnyProblem> problem = problem_for(manner);
     RoundState state = evaluated(*problem, manner, samples, values, {});
     double damping = 1e-3;
+    int rejected = 0;
     for (int round = 0; round < manner.rounds; ++round) {
-      const RoundState next =
-          evaluated(*problem, manner, samples, stepped(*problem, state, damping), state.hits);
-      const bool is_better = next.cost < state.cost;
-      const bool is_settled =
-          std::abs(state.cost - next.cost) <= manner.tolerance * std::abs(state.cost);
-      if (is_better) state = next;
-      damping = is_better ? std::max(1e-9, 0.1 * damping) : 10.0 * damping;
-      if (is_settled || damping > 1e6) break;
+      const auto [values_after, promised] = stepped(*problem, state, damping);
+      if (!(promised > manner.tolerance * state.cost)) break;
+      RoundState next = evaluated(*problem, manner, samples, values_after, state.hits);
+      const double fall = state.cost - next.cost;
+      const bool is_better = fall > 0.0;
+      damping = is_better ? std::max(1e-9, 0.1 * damping) : 30.0 * damping;
+      rejected = is_better ? 0 : rejected + 1;
+      constexpr int kKinks = 3;  // the cost has some, where the nearest triangle changes
+      if (is_better) state = std::move(next);
+      if (rejected == kKinks || (is_better && fall <= manner.tolerance * state.cost)) break;
     }
     return state;
   }
@@ -216,12 +220,13 @@ class SurfaceRounds {
   }
 
   /// The free parameters of the step that samples affect.
-  [[nodiscard]] FreeSet free_of(const AnyProblem& problem) const {
+  [[nodiscard]] FreeSet free_of(const AnyProblem& problem, const std::set<int>& held) const {
     const std::vector<int> touched = problem.touched_parameters();
     std::vector<int> free;
     for (const FreeParamConfig& parameter : free_parameters(config_.steps[step_])) {
       const int index = problem.table().find(parameter.name);
-      if (std::binary_search(touched.begin(), touched.end(), index)) free.push_back(index);
+      const bool is_touched = std::binary_search(touched.begin(), touched.end(), index);
+      if (is_touched && !held.contains(index)) free.push_back(index);
     }
     return FreeSet(std::move(free), problem.table().size());
   }
@@ -262,7 +267,7 @@ class SurfaceRounds {
     for (const Sample& sample : matched(samples, state.hits, manner.gate)) {
       problem->add_sample(sample);
     }
-    const FreeSet free = free_of(*problem);
+    const FreeSet free = free_of(*problem, manner.held);
     if (free.size() == 0) return state;
     state.sums = normal_equations(*problem, span_of(state.values), &free, Losses::as_given,
                                   input_.threads);
@@ -316,12 +321,12 @@ class SurfaceRounds {
     }
   }
 
-  /// Values after a damped step, inside of bounds.
-  [[nodiscard]] Eigen::VectorXd stepped(const AnyProblem& problem, const RoundState& state,
+  /// Values after a damped step, inside of bounds, and how far the cost should fall.
+  [[nodiscard]] std::pair<Eigen::VectorXd, double> stepped(const AnyProblem& problem, const RoundState& state,
                                         double damping) const {
     Eigen::VectorXd values = state.values;
     const Eigen::Index n = state.sums.gradient.size();
-    if (n == 0) return values;
+    if (n == 0) return {values, 0.0};
     Eigen::MatrixXd hessian = state.sums.hessian;
     const double mean = hessian.trace() / static_cast<double>(n);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -333,7 +338,7 @@ class SurfaceRounds {
       const Parameter& parameter = problem.table()[p];
       values[p] = std::clamp(values[p] + step[i], parameter.lower, parameter.upper);
     }
-    return values;
+    return {values, -0.5 * step.dot(state.sums.gradient)};
   }
 
   const SurfaceInput& input_;
@@ -470,6 +475,57 @@ class SurfaceFit {
     if (!best) best = coarse(few, start, kSteady);
     const RoundState near = fine(few, best->values);
     return fine(samples, near.values);
+  }
+
+  /// The median distances of clouds that had no say, with free joints and with held ones; nullopt if free ones bring them
+  /// nearer.  Two halves of the samples are judged by each other.
+  /// @param joints  table indices of free parameters of joints
+  /// @param start   values with which joints are held
+  /// @param end     where the rounds have ended
+  [[nodiscard]] std::optional<std::pair<double, double>> bring_nothing(
+      std::span<const Sample> samples, const std::set<int>& joints, const Eigen::VectorXd& start,
+      const Eigen::VectorXd& end) const {
+    constexpr std::size_t kFewest = 6;
+    if (joints.empty() || samples.size() < kFewest) return std::nullopt;
+    const std::vector<Sample> few = thinned(samples, kFewPoints);
+    Eigen::VectorXd held = end;
+    for (const int p : joints) held[p] = start[p];
+    std::vector<double> gains, with, without;  // gains: of each sample
+    for (std::size_t half = 0; half < 2; ++half) {
+      std::vector<Sample> heard, judged;
+      for (std::size_t s = 0; s < few.size(); ++s) {
+        (s % 2 == half ? heard : judged).push_back(few[s]);
+      }
+      const auto distances = [&](const Eigen::VectorXd& from, const std::set<int>& fixed) {
+        const RoundManner manner{.gate = gate_, .rounds = 15, .tolerance = 1e-5, .held = fixed};
+        const RoundState fitted = rounds_.run(manner, heard, from);
+        std::vector<SurfaceHits> hits;
+        rounds_.associate(*rounds_.problem_for({}), judged, fitted.values, gate_, hits);
+        std::vector<std::vector<double>> all(judged.size());
+        for (const SurfaceHits& of_block : hits) {
+          for (std::size_t s = 0; s < judged.size(); ++s) {
+            for (const SurfaceHit& hit : of_block[s]) {
+              all[s].push_back(std::min(hit.distance, gate_));
+            }
+          }
+        }
+        return all;
+      };
+      const auto free = distances(end, {}), fixed = distances(held, joints);
+      for (std::size_t s = 0; s < judged.size(); ++s) {
+        if (free[s].empty()) continue;
+        gains.push_back(median_of(fixed[s]) - median_of(free[s]));
+        with.insert(with.end(), free[s].begin(), free[s].end());
+        without.insert(without.end(), fixed[s].begin(), fixed[s].end());
+      }
+    }
+    if (gains.size() < kFewest) return std::nullopt;
+    const Eigen::Map<const Eigen::VectorXd> gain(gains.data(), std::ssize(gains));
+    const double mean = gain.mean(), n = static_cast<double>(gains.size());
+    const double error = std::sqrt((gain.array() - mean).square().sum() / (n * (n - 1.0)));
+    constexpr double kSure = 2.0;  // standard errors
+    if (mean > kSure * error) return std::nullopt;
+    return std::pair(median_of(std::move(with)), median_of(std::move(without)));
   }
 
   /// The gate beyond which points of a block do not count in the end, metres.
@@ -638,6 +694,37 @@ void keep_loss(const std::string& name, const SurfaceHits& hits, double gate, St
   block.loss.scale /= *block.sigma;
 }
 
+/// Doubts zeros and geometry of joints that clouds which had no say do not confirm.
+void check_joints(const SurfaceFit& fit, const SurfaceInput& input, const StepConfig& step,
+                  const ParameterTable& table, std::span<const Sample> samples,
+                  const Eigen::VectorXd& start, const Eigen::VectorXd& end,
+                  Diagnostics& diagnostics) {
+  std::set<int> joints;
+  std::vector<std::string> names;
+  for (const FreeParamConfig& parameter : free_parameters(step)) {
+    const int index = table.find(parameter.name);
+    const bool is_zero = input.robot.has_joint(parameter.name);
+    const bool is_of_joint =
+        is_zero || std::any_of(step.free_frames.begin(), step.free_frames.end(),
+                               [&](const FreeFrameConfig& frame) {
+                                 return parameter.name.starts_with(frame.name + "_") &&
+                                        input.robot.has_joint(frame.name) &&
+                                        moves(input.robot.joint(frame.name).type);
+                               });
+    if (index < 0 || !is_of_joint || !joints.insert(index).second) continue;
+    names.push_back(parameter.name);
+  }
+  const auto medians = fit.bring_nothing(samples, joints, start, end);
+  if (!medians) return;
+  diagnostics.doubt(
+      step.place,
+      fmt::format("what is free of joints ({}) brings clouds that had no say no nearer to the robot: "
+                  "{:.2f} mm with it, {:.2f} mm without (median), in halves of the samples; it may "
+                  "take up errors of the depth.  Hold it: --hold {}",
+                  fmt::join(names, ", "), 1e3 * medians->first, 1e3 * medians->second,
+                  fmt::join(names, ",")));
+}
+
 /// Doubts a camera that stands inside of a link.
 void check_camera(const SurfaceBlock& block, const BlockConfig& of, const AnyProblem& problem,
                   std::span<const Sample> samples, const Eigen::VectorXd& values,
@@ -767,7 +854,8 @@ std::vector<double> match_surface(const SurfaceInput& input, Config& config,
     for (const auto& [index, value] : assumed.steps[s].assignments) values[index] = value;
     const std::vector<Sample> heard = detail::heard(matched, input.exclude);
     detail::SurfaceFit fit(input, config, s, blocks);
-    values = fit.run(heard, values, assumed.steps[s].unknown_frames, diagnostics).values;
+    const Eigen::VectorXd start = values;
+    values = fit.run(heard, start, assumed.steps[s].unknown_frames, diagnostics).values;
     const detail::SurfaceRounds rounds(input, config, s, blocks);
     const std::unique_ptr<AnyProblem> problem = rounds.problem_for({});
     std::vector<SurfaceHits> hits;
@@ -776,6 +864,10 @@ std::vector<double> match_surface(const SurfaceInput& input, Config& config,
       const BlockConfig& of = detail::block_of(config.steps[s], blocks[b].name);
       detail::report_fit(blocks[b], of, fit.gate(), hits[b], matched.size(), diagnostics);
       detail::check_camera(blocks[b], of, *problem, matched, values, diagnostics);
+    }
+    if (diagnostics.errors.size() == before) {
+      detail::check_joints(fit, input, config.steps[s], assumed.table, heard, start, values,
+                           diagnostics);
     }
     matched = rounds.matched(matched, hits, fit.gate());
     for (std::size_t b = 0; b < blocks.size(); ++b) {
