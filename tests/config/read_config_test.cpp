@@ -728,9 +728,10 @@ TEST(ReadConfig, BlocksCompareACameraWithTheSurfaceOfLinks) {
 }
 
 TEST(ReadConfig, WrongKeysOfASurfaceAreErrors) {
-  EXPECT_THAT(errors(with_block("type: chain3d_to_mesh, model: camera, links: [a], link_name: b")),
-              ElementsAre("calibrate.yaml:10: error block 'block': 'link_name' and 'links' both name "
-                          "the links of the surface"));
+  EXPECT_THAT(
+      errors(with_block("type: chain3d_to_mesh, model: camera, links: [a], link_name: b")),
+      ElementsAre("calibrate.yaml:10: error block 'block': 'link_name' and 'links' both name "
+                  "the links of the surface"));
   EXPECT_THAT(errors(with_block("type: chain3d_to_mesh, model: camera, links: []")),
               ElementsAre("calibrate.yaml:10: error block 'block': links has no link"));
   EXPECT_THAT(errors(with_block("type: chain3d_to_mesh, model: camera, geometry: inertial")),

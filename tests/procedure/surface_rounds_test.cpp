@@ -64,7 +64,8 @@ class SurfaceRoundsOfAnArm : public test::FolderTest {
 };
 
 TEST_F(SurfaceRoundsOfAnArm, FindTheCameraToTheNoise) {
-  const CalibratedRobot calibrated = calibrate_robot(setup(test::mesh_config(kStart), {.noise = 0.001}));
+  const CalibratedRobot calibrated =
+      calibrate_robot(setup(test::mesh_config(kStart), {.noise = 0.001}));
   ASSERT_TRUE(calibrated.is_usable()) << calibrated.judgement.reasons.front();
   const Pose<double> found = camera_in(calibrated.result.table);
   EXPECT_LT(distance_of(found, test::true_camera()), 0.5e-3) << "10 000 points with 1 mm of noise";
@@ -92,10 +93,11 @@ TEST_F(SurfaceRoundsOfAnArm, FindOffsetsOfJoints) {
 
 TEST_F(SurfaceRoundsOfAnArm, NeedNoStart) {
   for (const unsigned seed : {1U, 2U, 3U}) {
-    PreparedCalibration prepared = prepare(
-        setup(test::mesh_config(""), {.samples = 4, .noise = 0.001, .background = true, .seed = seed}));
+    PreparedCalibration prepared = prepare(setup(
+        test::mesh_config(""), {.samples = 4, .noise = 0.001, .background = true, .seed = seed}));
     ASSERT_THAT(prepared.diagnostics.errors, IsEmpty());
-    EXPECT_THAT(prepared.diagnostics.notes, testing::Contains(HasSubstr("'camera_joint' was searched")));
+    EXPECT_THAT(prepared.diagnostics.notes,
+                testing::Contains(HasSubstr("'camera_joint' was searched")));
     ParameterTable table = prepared.calibration.table;
     for (int p = 0; p < table.size(); ++p) {
       table[p].value = prepared.calibration.begin[static_cast<std::size_t>(p)];
@@ -120,8 +122,10 @@ TEST_F(SurfaceRoundsOfAnArm, DoNotDependOnTheNumberOfThreads) {
   const auto begin_with = [&](int threads) {
     CalibrationOptions options;
     options.solving.threads = threads;
-    return prepare(setup(test::mesh_config(""), {.samples = 3, .background = true}), options)
-        .calibration.begin;
+    const PreparedCalibration prepared =
+        prepare(setup(test::mesh_config(""), {.samples = 3, .background = true}), options);
+    EXPECT_THAT(prepared.diagnostics.errors, IsEmpty());
+    return prepared.calibration.begin;
   };
   EXPECT_EQ(begin_with(1), begin_with(3));
 }
@@ -162,13 +166,13 @@ TEST_F(SurfaceRoundsOfAnArm, RefuseCloudsOfSomethingElse) {
 TEST_F(SurfaceRoundsOfAnArm, RefuseCloudsOfOtherJoints) {
   CalibrationSetup of = setup(test::mesh_config(""), {.noise = 0.001, .background = true});
   for (std::size_t s = 0; s < of.samples.size(); ++s) {  // the rows are shifted
-    of.samples[s].observations = setup(test::mesh_config(""), {.background = true, .seed = 77})
-                                     .samples[s]
-                                     .observations;
+    of.samples[s].observations =
+        setup(test::mesh_config(""), {.background = true, .seed = 77}).samples[s].observations;
   }
   EXPECT_FALSE([&] {
-    const PreparedCalibration prepared = prepare(of);
-    return prepared.diagnostics.errors.empty() && calibrate_robot(prepared).judgement.verdict == Grade::good;
+    PreparedCalibration prepared = prepare(of);
+    return prepared.diagnostics.errors.empty() &&
+           calibrate_robot(std::move(prepared)).judgement.verdict == Grade::good;
   }());
 }
 

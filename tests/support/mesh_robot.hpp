@@ -26,7 +26,8 @@ inline Shape link_shape(std::size_t link) {
   const std::array<Shape, 2> parts = [&]() -> std::array<Shape, 2> {
     switch (link) {
       case 0:
-        return {box({-0.12, -0.10, 0.0}, {0.10, 0.12, 0.25}), ball({0.12, 0.05, 0.1}, 0.08, 10, 0.2)};
+        return {box({-0.12, -0.10, 0.0}, {0.10, 0.12, 0.25}),
+                ball({0.12, 0.05, 0.1}, 0.08, 10, 0.2)};
       case 1:
         return {box({-0.05, -0.04, 0.03}, {0.05, 0.06, 0.37}),
                 ball({0.06, -0.03, 0.2}, 0.07, 10, 0.2)};
@@ -48,7 +49,8 @@ inline Shape link_shape(std::size_t link) {
 }
 
 /// @param mesh  the element of a link: its name in "%"
-inline std::string mesh_robot_urdf(const std::string& suffix = ".stl", const std::string& scale = "1 1 1") {
+inline std::string mesh_robot_urdf(const std::string& suffix = ".stl",
+                                   const std::string& scale = "1 1 1") {
   std::string text = "<robot name=\"arm\">\n";
   for (const char* link : kMeshLinks) {
     text += std::string("<link name=\"") + link + "\"><visual><geometry><mesh filename=\"" + link +
@@ -56,12 +58,13 @@ inline std::string mesh_robot_urdf(const std::string& suffix = ".stl", const std
   }
   const std::array axes = {"0 0 1", "0 1 0", "0 1 0", "0 0 1"};
   const std::array origins = {"0 0 0.27", "0 0 0.40", "0 0 0.33"};
-  text += "<link name=\"camera\"/>\n<joint name=\"camera_joint\" type=\"fixed\"><parent link=\"base\"/>"
-          "<child link=\"camera\"/></joint>\n";
+  text +=
+      "<link name=\"camera\"/>\n<joint name=\"camera_joint\" type=\"fixed\"><parent link=\"base\"/>"
+      "<child link=\"camera\"/></joint>\n";
   for (std::size_t i = 0; i < 3; ++i) {
-    text += std::string("<joint name=\"") + kMeshJoints[i] + "\" type=\"revolute\"><parent link=\"" +
-            kMeshLinks[i] + "\"/><child link=\"" + kMeshLinks[i + 1] + "\"/><origin xyz=\"" +
-            origins[i] + "\"/><axis xyz=\"" + axes[i] +
+    text += std::string("<joint name=\"") + kMeshJoints[i] +
+            "\" type=\"revolute\"><parent link=\"" + kMeshLinks[i] + "\"/><child link=\"" +
+            kMeshLinks[i + 1] + "\"/><origin xyz=\"" + origins[i] + "\"/><axis xyz=\"" + axes[i] +
             "\"/><limit lower=\"-2.5\" upper=\"2.5\" effort=\"1\" velocity=\"1\"/></joint>\n";
   }
   return text + "</robot>\n";
@@ -102,9 +105,9 @@ inline std::vector<Pose<double>> mesh_robot_poses(const Robot& robot,
 /// How clouds are made.
 struct CloudPlan {
   int samples = 8;
-  int pixels = 50;            ///< along a side of the image
-  double noise = 0.0;         ///< metres, along the line of sight
-  bool background = false;    ///< a wall behind the robot
+  int pixels = 50;                             ///< along a side of the image
+  double noise = 0.0;                          ///< metres, along the line of sight
+  bool background = false;                     ///< a wall behind the robot
   std::map<std::string, double> offsets = {};  ///< of joints: the truth less what is recorded
   unsigned seed = 1;
 };
@@ -135,11 +138,16 @@ inline std::vector<Sample> mesh_robot_samples(const Robot& robot, const CloudPla
       q[joint] = position + offset;
     }
     const std::vector<Pose<double>> links = mesh_robot_poses(robot, q);
-    Observation seen{.sensor = "camera", .features = {}};
+    Observation seen{.sensor = "camera", .features = {}, .camera = CameraInfo{}};
+    const double center = 0.5 * plan.pixels, focal = center / 0.6;
+    seen.camera->width = seen.camera->height = plan.pixels;
+    seen.camera->p = {focal, 0.0, center, 0.0, 0.0, focal, center, 0.0, 0.0, 0.0, 1.0, 0.0};
+    seen.camera->k = {focal, 0.0, center, 0.0, focal, center, 0.0, 0.0, 1.0};
     for (int u = 0; u < plan.pixels; ++u) {
       for (int v = 0; v < plan.pixels; ++v) {
         const double half = 0.5 * plan.pixels;
-        const Vector3<double> ray((u + 0.5 - half) / half * 0.6, (v + 0.5 - half) / half * 0.6, 1.0);
+        const Vector3<double> ray((u + 0.5 - half) / half * 0.6, (v + 0.5 - half) / half * 0.6,
+                                  1.0);
         double depth = surface
                            .cast(links, base_T_camera.translation,
                                  Vector3<double>(base_T_camera.rotation * ray))
@@ -164,8 +172,9 @@ inline std::string mesh_config(const std::string& initial, const std::string& bl
          (free_params.empty() ? "" : "free_params: [" + free_params + "]\n") +
          "free_frames:\n- {name: camera_joint, x: true, y: true, z: true, roll: true, pitch: true, "
          "yaw: true}\n" +
-         (initial.empty() ? ""
-                          : "free_frames_initial_values:\n- {name: camera_joint, " + initial + "}\n") +
+         (initial.empty()
+              ? ""
+              : "free_frames_initial_values:\n- {name: camera_joint, " + initial + "}\n") +
          "error_blocks:\n- {name: surface, type: chain3d_to_mesh, model: camera" + block + "}\n";
 }
 

@@ -37,7 +37,8 @@ struct Shape {
 inline Shape box(const Vector3<double>& low, const Vector3<double>& high) {
   Shape shape;
   for (int i = 0; i < 8; ++i) {
-    shape.vertices.emplace_back((i & 1) != 0 ? high.x() : low.x(), (i & 2) != 0 ? high.y() : low.y(),
+    shape.vertices.emplace_back((i & 1) != 0 ? high.x() : low.x(),
+                                (i & 2) != 0 ? high.y() : low.y(),
                                 (i & 4) != 0 ? high.z() : low.z());
   }
   const std::array<std::array<std::uint32_t, 4>, 6> faces = {
@@ -68,7 +69,9 @@ inline Shape ball(const Vector3<double>& center, double radius, std::uint32_t ri
     }
   }
   add(std::numbers::pi, 0.0);
-  const auto at = [&](std::uint32_t i, std::uint32_t j) { return 1 + (i - 1) * around + j % around; };
+  const auto at = [&](std::uint32_t i, std::uint32_t j) {
+    return 1 + (i - 1) * around + j % around;
+  };
   const std::uint32_t last = 1 + (rings - 1) * around;
   for (std::uint32_t j = 0; j < around; ++j) {
     shape.triangles.push_back({0, at(1, j), at(1, j + 1)});

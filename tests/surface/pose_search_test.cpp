@@ -42,7 +42,9 @@ TEST(PoseSearch, FindsTheCameraFromNothing) {
   int found = 0;
   constexpr int kTrials = 10;
   for (unsigned seed = 1; seed <= kTrials; ++seed) {
-    found += has_truth(find_poses(surface, clouds({.samples = 3, .noise = 0.003, .seed = seed}))) ? 1 : 0;
+    found += has_truth(find_poses(surface, clouds({.samples = 3, .noise = 0.003, .seed = seed})))
+                 ? 1
+                 : 0;
   }
   EXPECT_GE(found, kTrials - 1);
 }

@@ -78,13 +78,15 @@ TEST(RobotSurface, NormalsAreTheGradientOfTheDistance) {
       return surface.closest(test::mesh_robot_poses(robot, q), at);
     };
     const SurfaceHit hit = distance(0.0, p);
-    constexpr double kStep = 1e-5, kTolerance = 2e-3;  // floats choose, so distances have kinks of 1e-8
-    const double sign = hit.normal.dot(hit.face) >= 0.0 &&
-                                hit.normal.dot(p - test::mesh_robot_poses(robot, kPosition)
-                                                       [static_cast<std::size_t>(hit.link)] *
-                                                       hit.point) < 0.0
-                            ? -1.0
-                            : 1.0;
+    constexpr double kStep = 1e-5,
+                     kTolerance = 2e-3;  // floats choose, so distances have kinks of 1e-8
+    const double sign =
+        hit.normal.dot(hit.face) >= 0.0 &&
+                hit.normal.dot(p - test::mesh_robot_poses(
+                                       robot, kPosition)[static_cast<std::size_t>(hit.link)] *
+                                       hit.point) < 0.0
+            ? -1.0
+            : 1.0;
     for (Eigen::Index k = 0; k < 3; ++k) {
       const Vector3<double> step = kStep * Vector3<double>::Unit(k);
       const double difference =
@@ -95,8 +97,8 @@ TEST(RobotSurface, NormalsAreTheGradientOfTheDistance) {
     const auto at = [&](double lift) {
       std::map<std::string, double> q = kPosition;
       q["lift"] += lift;
-      return Vector3<double>(
-          test::mesh_robot_poses(robot, q)[static_cast<std::size_t>(hit.link)] * hit.point);
+      return Vector3<double>(test::mesh_robot_poses(robot, q)[static_cast<std::size_t>(hit.link)] *
+                             hit.point);
     };
     const double of_block = hit.normal.dot(at(-kStep) - at(kStep)) / (2.0 * kStep);
     const double difference =
@@ -114,7 +116,7 @@ TEST(RobotSurface, CastsRaysOnAllLinks) {
   const Vector3<double> eye(-1.5, 0.2, 0.6);
   int hits = 0;
   for (int i = 0; i < 100; ++i) {
-    const Vector3<double> ray(1.0, 0.006 * (i - 50), 0.3 - 0.009 * i);
+    const Vector3<double> ray(1.0, 0.002 * (i - 50) - 0.13, 0.3 - 0.008 * i);
     const SurfaceHit hit = surface.cast(poses, eye, ray);
     if (hit.link < 0) continue;
     ++hits;
@@ -182,12 +184,12 @@ TEST_F(RobotSurfaceOfFiles, NamesSizesThatNoLinkHas) {
   test::write_meshes(folder_, 1000.0);
   (void)read_with(test::mesh_robot_urdf(), {.links = {"base"}});
   ASSERT_EQ(found_.errors.size(), 1U);
-  EXPECT_THAT(found_.errors[0], HasSubstr("link 'base': its mesh is 25"));
+  EXPECT_THAT(found_.errors[0], HasSubstr("link 'base': its mesh is 326.1 m long"));
   EXPECT_THAT(found_.errors[0], HasSubstr("is it in millimetres?"));
   test::write_meshes(folder_, 0.001);
   (void)read_with(test::mesh_robot_urdf(), {.links = {"base"}});
   ASSERT_EQ(found_.errors.size(), 1U);
-  EXPECT_THAT(found_.errors[0], HasSubstr("0.25 mm long"));
+  EXPECT_THAT(found_.errors[0], HasSubstr("0.326 mm long"));
 }
 
 }  // namespace

@@ -13,7 +13,9 @@ using test::ball;
 using test::box;
 using test::Shape;
 
-TriangleTree tree_of(const Shape& shape) { return {shape.vertices, shape.triangles}; }
+TriangleTree tree_of(const Shape& shape) {
+  return {shape.vertices, shape.triangles};
+}
 
 /// The distance of a point from a triangle, by the regions about it (Ericson 5.1.5).
 double distance_of(const Vector3<double>& p, const std::array<Vector3<double>, 3>& corners) {

@@ -120,8 +120,8 @@ void read_block_weighting(ConfigMap& map, BlockConfig& block) {
     const ConfigEntry* entry = map.find(key);
     if (entry == nullptr) continue;
     if (given != nullptr) {
-      map.error(entry->place, fmt::format("'{}' and '{}' both name the links of the surface", given,
-                                          key));
+      map.error(entry->place,
+                fmt::format("'{}' and '{}' both name the links of the surface", given, key));
     }
     given = key;
     if (entry->value.is_list()) {

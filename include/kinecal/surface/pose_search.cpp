@@ -93,7 +93,7 @@ class DistanceGrid {
     }
     const float* base = &squares_[index(first[0], first[1], first[2])];
     const std::ptrdiff_t up = size_[2], over = std::ptrdiff_t{size_[1]} * size_[2];
-    const auto [u, v, w] = part;
+    const double u = part[0], v = part[1], w = part[2];
     const auto line = [&](const float* from) { return from[0] + w * (from[1] - from[0]); };
     const double a = line(base), b = line(base + up), c = line(base + over),
                  d = line(base + over + up);
@@ -102,8 +102,8 @@ class DistanceGrid {
       const auto rise = [](const float* from) { return double{from[1]} - from[0]; };
       const double r = rise(base) + v * (rise(base + up) - rise(base)),
                    s = rise(base + over) + v * (rise(base + over + up) - rise(base + over));
-      *gradient = Vector3<double>(high - low, (b - a) + u * ((d - c) - (b - a)), r + u * (s - r)) /
-                  kCell;
+      *gradient =
+          Vector3<double>(high - low, (b - a) + u * ((d - c) - (b - a)), r + u * (s - r)) / kCell;
     }
     return low + u * (high - low);
   }
@@ -366,10 +366,10 @@ std::vector<Pose<double>> find_poses(const RobotSurface& surface,
                                      std::span<const PosedCloud> samples,
                                      const SurfaceSearch& search) {
   const auto has_points = [](const PosedCloud& sample) { return !sample.points.empty(); };
-  if (surface.links().empty() || std::none_of(samples.begin(), samples.end(), has_points)) return {};
+  if (surface.links().empty() || std::none_of(samples.begin(), samples.end(), has_points))
+    return {};
   std::vector<Pose<double>> poses;
-  for (const detail::Candidate& one :
-       detail::PoseSearcher(surface, samples, search).search()) {
+  for (const detail::Candidate& one : detail::PoseSearcher(surface, samples, search).search()) {
     poses.push_back(one.pose);
   }
   return poses;

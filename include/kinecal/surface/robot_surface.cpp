@@ -74,9 +74,8 @@ class SurfaceReader {
  private:
   [[nodiscard]] bool is_needed(const std::string& link) const {
     const auto& needed = source_.links;
-    return needed.empty() || std::any_of(needed.begin(), needed.end(), [&](const auto& name) {
-             return same_frame(name, link);
-           });
+    return needed.empty() || std::any_of(needed.begin(), needed.end(),
+                                         [&](const auto& name) { return same_frame(name, link); });
   }
 
   /// A mesh, read once; nullptr, and an error, if that fails.
@@ -123,9 +122,10 @@ class SurfaceReader {
     if (facts.triangles == 0) {
       why = "all triangles of its mesh are without area";
     } else if (size > kLargest) {
-      why = fmt::format("its mesh is {:.4g} m long; is it in millimetres?  Then write "
-                        "scale=\"0.001 0.001 0.001\" in its <mesh>",
-                        size);
+      why = fmt::format(
+          "its mesh is {:.4g} m long; is it in millimetres?  Then write "
+          "scale=\"0.001 0.001 0.001\" in its <mesh>",
+          size);
     } else if (size < kSmallest) {
       why = fmt::format("its mesh is {:.3g} mm long; is its scale wrong?  Vertices are in metres",
                         1e3 * size);
@@ -179,18 +179,25 @@ SurfaceHit RobotSurface::closest(std::span<const Pose<double>> base_T_links,
                            (p_base - base_T_links[i].translation));
   };
   const auto search = [&](std::size_t i, int guess) {
-    const auto found =
-        links_[i].tree.closest(in_link(i), std::min(bound, best.distance), guess);
+    const auto found = links_[i].tree.closest(in_link(i), std::min(bound, best.distance), guess);
     if (!found || found->distance >= best.distance) return;
     best = *found;
     hit.link = static_cast<int>(i);
   };
   if (last.link >= 0) search(static_cast<std::size_t>(last.link), last.triangle);
+  // The others from the nearest ball about a link on: what is found bounds the next search.
+  std::vector<double> away(links_.size());
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (static_cast<int>(i) == last.link) continue;
     const TriangleTree& tree = links_[i].tree;
-    const double away = (base_T_links[i] * tree.center() - p_base).norm() - tree.radius();
-    if (away < std::min(bound, best.distance)) search(i, -1);
+    away[i] = static_cast<int>(i) == last.link
+                  ? std::numeric_limits<double>::infinity()
+                  : (base_T_links[i] * tree.center() - p_base).norm() - tree.radius();
+  }
+  for (std::size_t n = 0; n < links_.size(); ++n) {
+    const auto next = std::min_element(away.begin(), away.end());
+    if (!(*next < std::min(bound, best.distance))) break;
+    *next = std::numeric_limits<double>::infinity();
+    search(static_cast<std::size_t>(next - away.begin()), -1);
   }
   if (hit.link < 0) return hit;
   const Pose<double>& base_T_link = base_T_links[static_cast<std::size_t>(hit.link)];
@@ -201,8 +208,9 @@ SurfaceHit RobotSurface::closest(std::span<const Pose<double>> base_T_links,
   const Vector3<double> off = p_base - base_T_link * best.point;
   constexpr double kCoincide = 1e-9;  // metres
   const bool is_behind = off.dot(hit.face) < 0.0;
-  hit.normal = off.norm() < kCoincide ? hit.face
-                                      : Vector3<double>((is_behind ? -1.0 : 1.0) * off.normalized());
+  hit.normal = off.norm() < kCoincide
+                   ? hit.face
+                   : Vector3<double>((is_behind ? -1.0 : 1.0) * off.normalized());
   return hit;
 }
 

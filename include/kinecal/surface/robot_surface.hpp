@@ -33,11 +33,13 @@ struct SurfaceLink {
 
 /// A point of the surface of a robot.
 struct SurfaceHit {
-  int link = -1;  ///< number of the link in the surface; negative: none within the bound
+  int link = -1;      ///< number of the link in the surface; negative: none within the bound
   int triangle = -1;  ///< of its tree
-  Vector3<double> point = Vector3<double>::Zero();   ///< (3) metres, in the link
-  Vector3<double> normal = Vector3<double>::Zero();  ///< (3) unit vector in the base: see point_to_mesh.hpp
-  Vector3<double> face = Vector3<double>::Zero();  ///< (3) outward normal of the triangle, in the base
+  Vector3<double> point = Vector3<double>::Zero();  ///< (3) metres, in the link
+  Vector3<double> normal =
+      Vector3<double>::Zero();  ///< (3) unit vector in the base: see point_to_mesh.hpp
+  Vector3<double> face =
+      Vector3<double>::Zero();  ///< (3) outward normal of the triangle, in the base
   double distance = std::numeric_limits<double>::infinity();  ///< metres
 };
 
@@ -72,8 +74,8 @@ class RobotSurface {
 
 /// What of a URDF is read as a surface.
 struct SurfaceSource {
-  std::string urdf;    ///< its name in messages: the file
-  MeshPlaces places;   ///< where meshes are
+  std::string urdf = {};                                  ///< its name in messages: the file
+  MeshPlaces places = {};                                 ///< where meshes are
   SurfaceGeometry geometry = SurfaceGeometry::automatic;  ///< which elements
   std::vector<std::string> links = {};  ///< those whose meshes are needed; empty: all that have one
   SourceLocation place = {};            ///< of what needs them, for messages

@@ -95,7 +95,8 @@ class TriangleTree::Build {
 
  private:
   static constexpr int kBins = 12;
-  static constexpr int kDeep = 30;  ///< levels, after which triangles are halved: Open has room for all
+  static constexpr int kDeep =
+      30;  ///< levels, after which triangles are halved: Open has room for all
 
   /// A place to divide at: after a bin along an axis.
   struct Cut {
@@ -159,7 +160,8 @@ class TriangleTree::Build {
       return half;
     }
     const auto middle = std::stable_partition(at(begin), at(end), [&](unsigned i) {
-      return bin_of(middles_[i][cut.axis], middles.low[cut.axis], middles.high[cut.axis]) <= cut.bin;
+      return bin_of(middles_[i][cut.axis], middles.low[cut.axis], middles.high[cut.axis]) <=
+             cut.bin;
     });
     return static_cast<std::size_t>(middle - order_.begin());
   }
@@ -178,10 +180,10 @@ class TriangleTree::Build {
       for (std::size_t i = from; i < to; ++i) box.add(boxes_[order_[i]]);
       for (std::size_t k = 0; k < 3; ++k) {
         // Rounded outward.
-        made.low[k][c] = from == to ? detail::kNowhere
-                                    : std::nextafter(static_cast<float>(box.low[k]), -1e30F);
-        made.high[k][c] = from == to ? detail::kNowhere
-                                     : std::nextafter(static_cast<float>(box.high[k]), 1e30F);
+        made.low[k][c] =
+            from == to ? detail::kNowhere : std::nextafter(static_cast<float>(box.low[k]), -1e30F);
+        made.high[k][c] =
+            from == to ? detail::kNowhere : std::nextafter(static_cast<float>(box.high[k]), 1e30F);
       }
       int child = 0;
       if (to > from) child = to - from <= kWide ? ~leaf(from, to) : node(from, to, level + 1);
@@ -230,11 +232,11 @@ TriangleTree::TriangleTree(const std::vector<Vector3<double>>& vertices,
   for (const auto& triangle : triangles) {
     Triangle one;
     for (std::size_t k = 0; k < 3; ++k) one.corners[k] = vertices[triangle[k]];
-    const Vector3<double> ab = one.corners[1] - one.corners[0], ac = one.corners[2] - one.corners[0];
+    const Vector3<double> ab = one.corners[1] - one.corners[0],
+                          ac = one.corners[2] - one.corners[0];
     const Vector3<double> across = ab.cross(ac);
     // The height over the longest edge, in parts of it: less is rounding of what the file holds.
-    const double longest =
-        std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
     constexpr double kThin = 1e-6;
     kept.push_back(triangle);
     if (!(across.norm() > kThin * longest && across.norm() > 1e-16)) {
@@ -279,11 +281,11 @@ void TriangleTree::find_facts(std::span<const std::array<std::uint32_t, 3>> corn
     for (std::size_t k = 0; k < 3; ++k) edges.emplace_back(triangle[k], triangle[(k + 1) % 3]);
   }
   std::sort(edges.begin(), edges.end());
-  facts_.closed = std::adjacent_find(edges.begin(), edges.end()) == edges.end() &&
-                  std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
-                    return std::binary_search(edges.begin(), edges.end(),
-                                              std::pair(edge.second, edge.first));
-                  });
+  facts_.closed =
+      std::adjacent_find(edges.begin(), edges.end()) == edges.end() &&
+      std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
+        return std::binary_search(edges.begin(), edges.end(), std::pair(edge.second, edge.first));
+      });
 }
 
 SurfacePoint TriangleTree::on_triangle(const Vector3<double>& p, int triangle) const {
@@ -318,7 +320,11 @@ std::optional<SurfacePoint> TriangleTree::closest(const Vector3<double>& p, doub
   if (nodes_.empty()) return std::nullopt;
   int best = guess;
   double start = bound;
-  if (guess >= 0) start = std::min(start, on_triangle(p, guess).distance);
+  SurfacePoint guessed;
+  if (guess >= 0) {
+    guessed = on_triangle(p, guess);
+    start = std::min(start, guessed.distance);
+  }
   float least = std::min(1e30F, static_cast<float>(start * start) * detail::kSlack);
   const std::array<Lanes, 3> at = {Lanes{} + static_cast<float>(p.x()),
                                    Lanes{} + static_cast<float>(p.y()),
@@ -364,9 +370,9 @@ std::optional<SurfacePoint> TriangleTree::closest(const Vector3<double>& p, doub
       }
       return squared;
     };
-    Lanes squared = detail::lower_of(
-        detail::lower_of(to_edge(leaf.ab, ap, b * leaf.ab_ab), to_edge(leaf.ac, ap, c * leaf.ac_ac)),
-        to_edge(bc, bp, detail::dot_of(bc, bp) * leaf.bc_bc));
+    Lanes squared = detail::lower_of(detail::lower_of(to_edge(leaf.ab, ap, b * leaf.ab_ab),
+                                                      to_edge(leaf.ac, ap, c * leaf.ac_ac)),
+                                     to_edge(bc, bp, detail::dot_of(bc, bp) * leaf.bc_bc));
     const auto is_inside = (v >= 0.0F) & (w >= 0.0F) & (v + w <= 1.0F);
     squared = is_inside ? detail::lower_of(squared, detail::dot_of(off, off)) : squared;
     for (int lane = 0; lane < kWide; ++lane) {
@@ -376,7 +382,7 @@ std::optional<SurfacePoint> TriangleTree::closest(const Vector3<double>& p, doub
     }
   }
   if (best < 0) return std::nullopt;
-  const SurfacePoint found = on_triangle(p, best);
+  const SurfacePoint found = best == guess ? guessed : on_triangle(p, best);
   if (found.distance > bound) return std::nullopt;
   return found;
 }

@@ -21,18 +21,20 @@ namespace kinecal {
 
 /// A point of a surface, in the frame of its triangles.
 struct SurfacePoint {
-  Vector3<double> point = Vector3<double>::Zero();    ///< (3) metres
-  Vector3<double> normal = Vector3<double>::UnitZ();  ///< (3) unit vector, outward as the corners turn
-  int triangle = -1;  ///< number in the tree; a start for the next search
-  double distance = std::numeric_limits<double>::infinity();  ///< metres: to the point, or along the ray
+  Vector3<double> point = Vector3<double>::Zero();  ///< (3) metres
+  Vector3<double> normal =
+      Vector3<double>::UnitZ();  ///< (3) unit vector, outward as the corners turn
+  int triangle = -1;             ///< number in the tree; a start for the next search
+  double distance =
+      std::numeric_limits<double>::infinity();  ///< metres: to the point, or along the ray
 };
 
 /// What is known of a surface beside its shape.
 struct SurfaceFacts {
-  std::size_t triangles = 0;   ///< with an area
+  std::size_t triangles = 0;     ///< with an area
   std::size_t without_area = 0;  ///< left out
-  bool closed = false;         ///< each edge belongs to two triangles that turn alike
-  double volume = 0.0;         ///< m^3; of a closed surface: negative if it is inside out
+  bool closed = false;           ///< each edge belongs to two triangles that turn alike
+  double volume = 0.0;           ///< m^3; of a closed surface: negative if it is inside out
   Vector3<double> low = Vector3<double>::Zero();   ///< (3) corner of the box about it, metres
   Vector3<double> high = Vector3<double>::Zero();  ///< (3) the other corner
 };
@@ -94,8 +96,8 @@ class TriangleTree {
   /// Four triangles: a corner, two edges, and what projects a point on them.
   struct Leaf {
     std::array<Lanes, 3> a, ab, ac;
-    Lanes g00, g01, g11;            ///< inverse of the products of the edges
-    Lanes ab_ab, ac_ac, bc_bc;      ///< one over the squared lengths of the edges
+    Lanes g00, g01, g11;        ///< inverse of the products of the edges
+    Lanes ab_ab, ac_ac, bc_bc;  ///< one over the squared lengths of the edges
   };
   struct Box;
   class Build;
