@@ -29,7 +29,7 @@ std::string urdf() {
   }
   return text +
          "<link name=\"camera\"/><joint name=\"mount\" type=\"fixed\"><parent link=\"l0\"/><child "
-         "link=\"camera\"/><origin xyz=\"-1 0 0.5\"/></joint></robot>";
+         "link=\"camera\"/><origin xyz=\"0 0 -3\"/></joint></robot>";
 }
 
 /// The arm, its camera, clouds.
@@ -55,7 +55,7 @@ struct Scene {
     std::mt19937 engine(1);
     std::uniform_real_distribution<double> turn(-1.5, 1.5);
     std::normal_distribution<double> noise(0.0, 0.003);
-    const Vector3<double> eye(-1.0, 0.0, 0.5);
+    const Vector3<double> eye(0.0, 0.0, -3.0);  // below: all points are in front of it
     for (int s = 0; s < kSamples; ++s) {
       Sample& sample = samples.emplace_back();
       for (int i = 1; i <= kLinks; ++i) {
@@ -63,7 +63,8 @@ struct Scene {
         sample.joint_positions.push_back(turn(engine));
       }
       const auto poses = link_poses(surface, {"camera", "surface"}, *problem, at(), sample);
-      Observation seen{.sensor = "camera", .features = {}};
+      Observation seen{.sensor = "camera", .features = {}, .camera = CameraInfo{}};
+      seen.camera->p = {500.0, 0.0, 320.0, 0.0, 0.0, 500.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
       for (int p = 0; p < kPoints; ++p) {
         const auto link = static_cast<std::size_t>(p % kLinks);
         const auto& corner =

@@ -138,11 +138,15 @@ inline std::vector<Sample> mesh_robot_samples(const Robot& robot, const CloudPla
       q[joint] = position + offset;
     }
     const std::vector<Pose<double>> links = mesh_robot_poses(robot, q);
-    Observation seen{.sensor = "camera", .features = {}};
+    Observation seen{.sensor = "camera", .features = {}, .camera = CameraInfo{}};
+    const double center = 0.5 * plan.pixels, focal = center / 0.45;
+    seen.camera->width = seen.camera->height = plan.pixels;
+    seen.camera->p = {focal, 0.0, center, 0.0, 0.0, focal, center, 0.0, 0.0, 0.0, 1.0, 0.0};
+    seen.camera->k = {focal, 0.0, center, 0.0, focal, center, 0.0, 0.0, 1.0};
     for (int u = 0; u < plan.pixels; ++u) {
       for (int v = 0; v < plan.pixels; ++v) {
         const double half = 0.5 * plan.pixels;
-        const Vector3<double> ray((u + 0.5 - half) / half * 0.6, (v + 0.5 - half) / half * 0.6,
+        const Vector3<double> ray((u + 0.5 - half) / half * 0.45, (v + 0.5 - half) / half * 0.45,
                                   1.0);
         double depth = surface
                            .cast(links, base_T_camera.translation,

@@ -108,6 +108,17 @@ void leave_open(PreparedCalibration& prepared, Search search, bool is_proposed) 
   return {};
 }
 
+/// Begins where rounds of association ended: initial values and searches for poses have done their work.
+void begin_at(std::vector<double> values, Calibration& calibration) {
+  if (calibration.steps.empty()) return;
+  calibration.begin = std::move(values);
+  calibration.steps.front().assignments.clear();
+  for (CalibrationStep& step : calibration.steps) {
+    std::erase_if(step.unknown_frames, [](const UnknownFrame& frame) { return frame.has_guess; });
+    for (UnknownFrame& frame : step.unknown_frames) frame.axes.fill(-1);  // nothing is left to find
+  }
+}
+
 /// "raw" or "rectified", by camera, where it was chosen.
 [[nodiscard]] std::map<std::string, std::string> images_of(const Config& config) {
   std::map<std::string, std::string> images;
@@ -349,10 +360,7 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
   if (!is_good()) return prepared;
   is_open ? detail::leave_open(prepared, options.search, is_proposed)
           : detail::assemble(prepared, options.exclude);
-  if (!begin.empty()) {  // the rounds have searched
-    for (CalibrationStep& step : prepared.calibration.steps) step.unknown_frames.clear();
-  }
-  prepared.calibration.begin = std::move(begin);
+  if (!begin.empty()) detail::begin_at(std::move(begin), prepared.calibration);
   return prepared;
 }
 

@@ -20,6 +20,7 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/loss_names.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/files/urdf/visuals.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/surface/pose_search.hpp"
@@ -45,6 +46,7 @@ struct SurfaceBlock {
   std::string name;  ///< of the error block
   SurfacePair pair;
   RobotSurface surface;
+  bool is_whole = true;  ///< no other link has a mesh, whose points may be near these
 };
 
 [[nodiscard]] const BlockConfig& block_of(const StepConfig& step, const std::string& name) {
@@ -73,7 +75,7 @@ class SurfaceResolver {
  private:
   [[nodiscard]] SurfaceBlock resolved(StepConfig& step, BlockConfig& block) {
     SurfaceConfig& of = *block.surface;
-    SurfaceBlock resolved{block.name, {block.models.at(0), block.models.at(1)}, {}};
+    SurfaceBlock resolved{block.name, {block.models.at(0), block.models.at(1)}, {}, true};
     const auto model = [&](const std::string& name) -> ModelConfig& {
       return *std::find_if(step.models.begin(), step.models.end(),
                            [&](const ModelConfig& one) { return one.name == name; });
@@ -95,6 +97,14 @@ class SurfaceResolver {
     if (of.links.empty()) {
       resolved.surface = without_camera(std::move(resolved.surface), step, block,
                                         model(resolved.pair.camera).frame);
+    }
+    if (!of.links.empty()) {
+      Diagnostics ignored;
+      std::set<std::string> all;
+      for (const Visual& visual : visuals(input_.urdf_text, input_.urdf, ignored)) {
+        if (visual.shape == VisualShape::mesh) all.insert(visual.link);
+      }
+      resolved.is_whole = all.size() <= resolved.surface.links().size();
     }
     std::vector<std::string> links;
     for (const SurfaceLink& link : resolved.surface.links()) links.push_back(link.name);
@@ -157,8 +167,9 @@ struct RoundManner {
   double gate = kWidest;             ///< metres
   std::optional<double> huber = {};  ///< metres, of a loss in place of the configured one
   int rounds = 1;                    ///< at most
-  double tolerance = 1e-8;           ///< relative fall of the cost at which rounds end
+  double tolerance = 1e-6;           ///< relative fall of the cost at which rounds end
   bool only_front = false;  ///< a point on the far side of a link counts as if beyond the gate
+  std::set<int> held = {};  ///< table indices of parameters that keep their values
 };
 
 /// A state of the rounds: what fits the values.
@@ -179,20 +190,34 @@ class SurfaceRounds {
       : input_(input), config_(config), step_(step), blocks_(blocks) {}
 
   /// Goes downhill from values; returns the state in which it ended.
+  /// @param hits  by block: those of the same samples for values that are near, or empty
   [[nodiscard]] RoundState run(const RoundManner& manner, std::span<const Sample> samples,
-                               const Eigen::VectorXd& values) const {
+                               const Eigen::VectorXd& values,
+                               std::vector<SurfaceHits> hits = {}) const {
     const std::unique_ptr<AnyProblem> problem = problem_for(manner);
-    RoundState state = evaluated(*problem, manner, samples, values, {});
+    RoundState state = evaluated(*problem, manner, samples, values, std::move(hits));
     double damping = 1e-3;
+    int rejected = 0;
+    Eigen::VectorXd last;  // step
     for (int round = 0; round < manner.rounds; ++round) {
-      const RoundState next =
-          evaluated(*problem, manner, samples, stepped(*problem, state, damping), state.hits);
-      const bool is_better = next.cost < state.cost;
-      const bool is_settled =
-          std::abs(state.cost - next.cost) <= manner.tolerance * std::abs(state.cost);
-      if (is_better) state = next;
-      damping = is_better ? std::max(1e-9, 0.1 * damping) : 10.0 * damping;
-      if (is_settled || damping > 1e6) break;
+      auto [values_after, promised] = stepped(*problem, state, damping);
+      if (!(promised > manner.tolerance * state.cost)) break;
+      Eigen::VectorXd step = values_after - state.values;
+      if (last.size() > 0 && rejected == 0) {
+        // Steps of robust losses are too short by a constant factor: Aitken's extrapolation.
+        constexpr double kMost = 0.7;
+        const double rate = std::clamp(step.dot(last) / last.squaredNorm(), 0.0, kMost);
+        values_after = inside_bounds(*problem, state.values + step / (1.0 - rate));
+      }
+      last = std::move(step);
+      RoundState next = evaluated(*problem, manner, samples, values_after, state.hits);
+      const double fall = state.cost - next.cost;
+      const bool is_better = fall > 0.0;
+      damping = is_better ? std::max(1e-9, 0.1 * damping) : 30.0 * damping;
+      rejected = is_better ? 0 : rejected + 1;
+      constexpr int kKinks = 3;  // the cost has some, where the nearest triangle changes
+      if (is_better) state = std::move(next);
+      if (rejected == kKinks || (is_better && fall <= manner.tolerance * state.cost)) break;
     }
     return state;
   }
@@ -215,12 +240,13 @@ class SurfaceRounds {
   }
 
   /// The free parameters of the step that samples affect.
-  [[nodiscard]] FreeSet free_of(const AnyProblem& problem) const {
+  [[nodiscard]] FreeSet free_of(const AnyProblem& problem, const std::set<int>& held) const {
     const std::vector<int> touched = problem.touched_parameters();
     std::vector<int> free;
     for (const FreeParamConfig& parameter : free_parameters(config_.steps[step_])) {
       const int index = problem.table().find(parameter.name);
-      if (std::binary_search(touched.begin(), touched.end(), index)) free.push_back(index);
+      const bool is_touched = std::binary_search(touched.begin(), touched.end(), index);
+      if (is_touched && !held.contains(index)) free.push_back(index);
     }
     return FreeSet(std::move(free), problem.table().size());
   }
@@ -261,7 +287,7 @@ class SurfaceRounds {
     for (const Sample& sample : matched(samples, state.hits, manner.gate)) {
       problem->add_sample(sample);
     }
-    const FreeSet free = free_of(*problem);
+    const FreeSet free = free_of(*problem, manner.held);
     if (free.size() == 0) return state;
     state.sums =
         normal_equations(*problem, span_of(state.values), &free, Losses::as_given, input_.threads);
@@ -315,24 +341,29 @@ class SurfaceRounds {
     }
   }
 
-  /// Values after a damped step, inside of bounds.
-  [[nodiscard]] Eigen::VectorXd stepped(const AnyProblem& problem, const RoundState& state,
-                                        double damping) const {
+  [[nodiscard]] static Eigen::VectorXd inside_bounds(const AnyProblem& problem,
+                                                     Eigen::VectorXd values) {
+    for (int p = 0; p < problem.table().size(); ++p) {
+      values[p] = std::clamp(values[p], problem.table()[p].lower, problem.table()[p].upper);
+    }
+    return values;
+  }
+
+  /// Values after a damped step, inside of bounds, and how far the cost should fall.
+  [[nodiscard]] std::pair<Eigen::VectorXd, double> stepped(const AnyProblem& problem,
+                                                           const RoundState& state,
+                                                           double damping) const {
     Eigen::VectorXd values = state.values;
     const Eigen::Index n = state.sums.gradient.size();
-    if (n == 0) return values;
+    if (n == 0) return {values, 0.0};
     Eigen::MatrixXd hessian = state.sums.hessian;
     const double mean = hessian.trace() / static_cast<double>(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       hessian(i, i) += damping * hessian(i, i) + 1e-9 * mean + 1e-30;
     }
     const Eigen::VectorXd step = hessian.ldlt().solve(-state.sums.gradient);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const int p = state.free[static_cast<std::size_t>(i)];
-      const Parameter& parameter = problem.table()[p];
-      values[p] = std::clamp(values[p] + step[i], parameter.lower, parameter.upper);
-    }
-    return values;
+    for (Eigen::Index i = 0; i < n; ++i) values[state.free[static_cast<std::size_t>(i)]] += step[i];
+    return {inside_bounds(problem, std::move(values)), -0.5 * step.dot(state.sums.gradient)};
   }
 
   const SurfaceInput& input_;
@@ -411,22 +442,49 @@ class SearchedFrame {
 
 /// How well the points of a block lie on the robot.
 struct SurfaceQuality {
-  std::vector<double> distances;  ///< of all points, metres; infinite beyond the bound
-  [[nodiscard]] double share(double within) const {
-    return static_cast<double>(std::count_if(distances.begin(), distances.end(),
-                                             [&](double d) { return d <= within; })) /
-           static_cast<double>(std::max<std::size_t>(1, distances.size()));
-  }
-  /// Of the points near the robot, the share that lies on it: about a quarter by chance.
+  std::vector<double> distances;             ///< of all points, metres; infinite beyond the bound
+  std::vector<std::vector<double>> of_links;  ///< of those nearest to each link
+
+  [[nodiscard]] double share(double within) const { return share_of(distances, within); }
+
+  /// At least 1 if the points lie on the robot.  Of points near a link that they are not of, a fit brings about half within a
+  /// fifth of the distance; of those that are of it, three quarters and more, as far as the noise allows.  Links count alike:
+  /// the base, which never moves, fits whatever the joints are.
   [[nodiscard]] double contrast() const {
-    return share(kOnRobot / 2.0) / std::max(1e-12, share(2.5 * kOnRobot));
+    constexpr double kNear = 0.62, kFar = 0.78;
+    return std::max(contrast(kOnRobot / 2.0) / kNear, contrast(kOnRobot) / kFar);
+  }
+
+ private:
+  [[nodiscard]] static double share_of(const std::vector<double>& all, double within) {
+    const auto count = std::count_if(all.begin(), all.end(), [&](double d) { return d <= within; });
+    return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, all.size()));
+  }
+  /// The mean of links with points near them: their share that is nearer by a factor of five.
+  [[nodiscard]] double contrast(double within) const {
+    constexpr double kFewest = 30.0;  // points
+    double sum = 0.0;
+    int links = 0;
+    for (const std::vector<double>& of_link : of_links) {
+      const double around = share_of(of_link, 5.0 * within);
+      if (around * static_cast<double>(of_link.size()) < kFewest) continue;
+      sum += share_of(of_link, within) / around;
+      ++links;
+    }
+    return links > 0 ? sum / links : 0.0;
   }
 };
 
 [[nodiscard]] SurfaceQuality quality_of(const SurfaceHits& hits) {
   SurfaceQuality quality;
   for (const auto& of_sample : hits) {
-    for (const SurfaceHit& hit : of_sample) quality.distances.push_back(hit.distance);
+    for (const SurfaceHit& hit : of_sample) {
+      quality.distances.push_back(hit.distance);
+      if (hit.link < 0) continue;
+      const auto link = static_cast<std::size_t>(hit.link);
+      quality.of_links.resize(std::max(quality.of_links.size(), link + 1));
+      quality.of_links[link].push_back(hit.distance);
+    }
   }
   return quality;
 }
@@ -445,21 +503,21 @@ class SurfaceFit {
     const std::vector<Sample> few = thinned(samples, kFewPoints);
     const bool is_lost = std::any_of(unknown.begin(), unknown.end(),
                                      [](const UnknownFrame& frame) { return !frame.has_guess; });
-    constexpr double kGood = 0.6;  // of quality
     std::optional<RoundState> best;
-    if (!is_lost) best = coarse(few, start, kSteady);
-    if (!best || contrast(few, *best) < kGood) {
-      const std::vector<Sample> fewest = thinned(few, kFewestPoints);
-      double least = best ? ranked(fewest, best->values) : std::numeric_limits<double>::infinity();
+    if (!is_lost) best = coarse(near(samples, start, kFewPoints), start, kSteady);
+    if (!best || contrast(few, *best) < 1.0) {
+      double least = best ? ranked(few, best->values) : std::numeric_limits<double>::infinity();
       std::optional<Eigen::VectorXd> found;
-      for (const Eigen::VectorXd& values : searched(few, start, unknown)) {
-        const RoundState end = coarse(fewest, values, kQuick);
-        const double rank = ranked(fewest, end.values);
+      for (const Eigen::VectorXd& values : searched(samples, start, unknown)) {
+        const RoundState end = coarse(near(samples, values, kFewestPoints), values, kQuick);
+        const double rank = ranked(few, end.values);
         if (rank >= least) continue;
         least = rank;
         found = end.values;
       }
-      if (found) best = coarse(few, *found, {.gates = {0.06, 0.03}, .rounds = 3});
+      if (found) {
+        best = coarse(near(samples, *found, kFewPoints), *found, {.gates = {0.06, 0.03}, .rounds = 3});
+      }
       if (is_lost && best) {
         diagnostics.notes.push_back("the pose of '" + unknown.front().name +
                                     "' was searched for: the surface of the robot in the clouds "
@@ -467,8 +525,59 @@ class SurfaceFit {
       }
     }
     if (!best) best = coarse(few, start, kSteady);
-    const RoundState near = fine(few, best->values);
-    return fine(samples, near.values);
+    const RoundState end = fine(near(samples, best->values, kFewPoints), best->values);
+    return fine(samples, end.values);
+  }
+
+  /// The median distances of clouds that had no say, with free joints and with held ones; nullopt if free ones bring them
+  /// nearer.  Two halves of the samples are judged by each other.
+  /// @param joints  table indices of free parameters of joints
+  /// @param start   values with which joints are held
+  /// @param end     where the rounds have ended
+  [[nodiscard]] std::optional<std::pair<double, double>> bring_nothing(
+      std::span<const Sample> samples, const std::set<int>& joints, const Eigen::VectorXd& start,
+      const Eigen::VectorXd& end) const {
+    constexpr std::size_t kFewest = 6;
+    if (joints.empty() || samples.size() < kFewest) return std::nullopt;
+    const std::vector<Sample> few = thinned(samples, kFewPoints);
+    Eigen::VectorXd held = end;
+    for (const int p : joints) held[p] = start[p];
+    std::vector<double> gains, with, without;  // gains: of each sample
+    for (std::size_t half = 0; half < 2; ++half) {
+      std::vector<Sample> heard, judged;
+      for (std::size_t s = 0; s < few.size(); ++s) {
+        (s % 2 == half ? heard : judged).push_back(few[s]);
+      }
+      const auto distances = [&](const Eigen::VectorXd& from, const std::set<int>& fixed) {
+        const RoundManner manner{.gate = gate_, .rounds = 15, .tolerance = 1e-5, .held = fixed};
+        const RoundState fitted = rounds_.run(manner, heard, from);
+        std::vector<SurfaceHits> hits;
+        rounds_.associate(*rounds_.problem_for({}), judged, fitted.values, gate_, hits);
+        std::vector<std::vector<double>> all(judged.size());
+        for (const SurfaceHits& of_block : hits) {
+          for (std::size_t s = 0; s < judged.size(); ++s) {
+            for (const SurfaceHit& hit : of_block[s]) {
+              all[s].push_back(std::min(hit.distance, gate_));
+            }
+          }
+        }
+        return all;
+      };
+      const auto free = distances(end, {}), fixed = distances(held, joints);
+      for (std::size_t s = 0; s < judged.size(); ++s) {
+        if (free[s].empty()) continue;
+        gains.push_back(median_of(fixed[s]) - median_of(free[s]));
+        with.insert(with.end(), free[s].begin(), free[s].end());
+        without.insert(without.end(), fixed[s].begin(), fixed[s].end());
+      }
+    }
+    if (gains.size() < kFewest) return std::nullopt;
+    const Eigen::Map<const Eigen::VectorXd> gain(gains.data(), std::ssize(gains));
+    const double mean = gain.mean(), n = static_cast<double>(gains.size());
+    const double error = std::sqrt((gain.array() - mean).square().sum() / (n * (n - 1.0)));
+    constexpr double kSure = 2.0;  // standard errors
+    if (mean > kSure * error) return std::nullopt;
+    return std::pair(median_of(std::move(with)), median_of(std::move(without)));
   }
 
   /// The gate beyond which points of a block do not count in the end, metres.
@@ -491,6 +600,23 @@ class SurfaceFit {
     return few;
   }
 
+  /// A few points of those that are near the robot: most of a cloud may be background.
+  [[nodiscard]] std::vector<Sample> near(std::span<const Sample> samples,
+                                         const Eigen::VectorXd& values, int points) const {
+    const int looked = points > kFewestPoints ? 10 : 3;  // times as many points are looked at
+    const std::vector<Sample> more = thinned(samples, looked * points);
+    std::vector<SurfaceHits> hits;
+    rounds_.associate(*rounds_.problem_for({}), more, values, kWidest, hits);
+    std::vector<Sample> all = rounds_.matched(more, hits, kWidest);
+    for (const SurfaceBlock& block : blocks_) {
+      for (Sample& sample : all) {
+        std::erase_if(sample.observations,
+                      [&](const Observation& one) { return one.sensor == block.pair.robot; });
+      }
+    }
+    return thinned(all, points);
+  }
+
   [[nodiscard]] RoundState coarse(std::span<const Sample> samples, const Eigen::VectorXd& values,
                                   const Shrinking& shrinking) const {
     constexpr double kHuber = 0.1;  // of the gate
@@ -498,7 +624,7 @@ class SurfaceFit {
     for (const double gate : shrinking.gates) {
       state = rounds_.run(
           {.gate = gate, .huber = kHuber * gate, .rounds = shrinking.rounds, .tolerance = 1e-3},
-          samples, state.values);
+          samples, state.values, std::move(state.hits));
     }
     return state;
   }
@@ -513,8 +639,8 @@ class SurfaceFit {
 
   [[nodiscard]] double contrast(std::span<const Sample> samples, const RoundState& state) const {
     std::vector<SurfaceHits> hits;
-    rounds_.associate(*rounds_.problem_for({}), samples, state.values, kWidest, hits);
-    double least = 1.0;
+    rounds_.associate(*rounds_.problem_for({}), samples, state.values, 5.0 * kOnRobot, hits);
+    double least = std::numeric_limits<double>::infinity();
     for (const SurfaceHits& of_block : hits)
       least = std::min(least, quality_of(of_block).contrast());
     return least;
@@ -580,6 +706,29 @@ class SurfaceFit {
   double gate_ = kWidest;
 };
 
+/// "; least well on 'link_7': 56 % of the points near it lie on it": something that no mesh has, or a joint that is off.
+[[nodiscard]] std::string links_off(const RobotSurface& surface, const SurfaceHits& hits) {
+  constexpr double kPoor = 0.6;
+  constexpr int kFewest = 100;  // points
+  std::vector<std::pair<int, int>> counts(surface.links().size());
+  for (const auto& of_sample : hits) {
+    for (const SurfaceHit& hit : of_sample) {
+      if (hit.link < 0 || hit.distance > 2.5 * kOnRobot) continue;
+      auto& [on, near] = counts[static_cast<std::size_t>(hit.link)];
+      ++near;
+      if (hit.distance <= 0.5 * kOnRobot) ++on;
+    }
+  }
+  std::string text;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const auto [on, near] = counts[i];
+    if (near < kFewest || on >= kPoor * near) continue;
+    text += fmt::format("{} '{}' ({:.0f} %)", text.empty() ? "; few of the points near them lie on" : ",",
+                        surface.links()[i].name, 100.0 * on / near);
+  }
+  return text;
+}
+
 /// Says how the points of a camera lie on the robot; an error if they do not.
 void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
                 const SurfaceHits& hits, std::size_t samples, Diagnostics& diagnostics) {
@@ -589,19 +738,21 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
   const std::string cloud =
       fmt::format("{} of sensor '{}' in {}", counted(quality.distances.size(), "point"),
                   block.pair.camera, counted(samples, "sample"));
-  constexpr double kFewest = 0.01, kChance = 0.55;
-  if (on < kFewest || quality.contrast() < kChance) {
-    diagnostics.error(
-        of.place,
+  constexpr double kFewest = 0.01;
+  if (on < kFewest || quality.contrast() < 1.0) {
+    const std::string why =
         fmt::format(
             "error block '{}': the points do not lie on the robot.  Of {}, {:.1f} % are "
             "within {:.0f} mm of its surface after the best fit, and of those within {:.0f} "
-            "mm {:.0f} % within {:.0f} mm: as many as by chance.  Are these clouds of this "
+            "mm {:.0f} % within {:.0f} mm: hardly more than by chance.  Are these clouds of this "
             "robot, in metres, in the frame of the camera, with the joints of the same time?  "
             "If the camera's pose is far off, leave its initial values out: then it is "
             "searched for",
             of.name, cloud, 100.0 * on, 1e3 * kOnRobot, 2.5e3 * kOnRobot,
-            100.0 * quality.contrast(), 0.5e3 * kOnRobot));
+            100.0 * quality.share(kOnRobot / 2.0) / std::max(1e-12, quality.share(2.5 * kOnRobot)),
+            0.5e3 * kOnRobot);
+    // Points of links that are not listed may be near the listed ones.
+    block.is_whole ? diagnostics.error(of.place, why) : diagnostics.doubt(of.place, why);
     return;
   }
   const LossType type = loss_type(of.loss.type);
@@ -618,7 +769,7 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
       of.name, cloud, 100.0 * on, 1e3 * kOnRobot, 100.0 * quality.share(gate), 1e3 * gate,
       1e3 * median_of(quality.distances));
   if (type != LossType::none) text += fmt::format(", their cost {:.6f}", cost);
-  diagnostics.note(of.place, text);
+  diagnostics.note(of.place, text + links_off(block.surface, hits));
 }
 
 /// Gives a block whose loss is in metres the noise that its points show, and the same loss in sigmas.
@@ -636,6 +787,39 @@ void keep_loss(const std::string& name, const SurfaceHits& hits, double gate, St
   constexpr double kOfMedian = 1.4826;
   block.sigma = std::max(1e-6, kOfMedian * median_of(std::move(near)));
   block.loss.scale /= *block.sigma;
+}
+
+/// Doubts zeros and geometry of joints that clouds which had no say do not confirm.
+void check_joints(const SurfaceFit& fit, const SurfaceInput& input, const StepConfig& step,
+                  const ParameterTable& table, std::span<const Sample> samples,
+                  const Eigen::VectorXd& start, const Eigen::VectorXd& end,
+                  Diagnostics& diagnostics) {
+  std::set<int> joints;
+  std::vector<std::string> names;
+  for (const FreeParamConfig& parameter : free_parameters(step)) {
+    const int index = table.find(parameter.name);
+    const bool is_zero = input.robot.has_joint(parameter.name);
+    const bool is_of_joint =
+        is_zero || std::any_of(step.free_frames.begin(), step.free_frames.end(),
+                               [&](const FreeFrameConfig& frame) {
+                                 return parameter.name.starts_with(frame.name + "_") &&
+                                        input.robot.has_joint(frame.name) &&
+                                        moves(input.robot.joint(frame.name).type);
+                               });
+    if (index < 0 || !is_of_joint || !joints.insert(index).second) continue;
+    names.push_back(parameter.name);
+  }
+  const auto medians = fit.bring_nothing(samples, joints, start, end);
+  if (!medians) return;
+  diagnostics.doubt(
+      step.place,
+      fmt::format(
+          "freeing {} does not bring held-out clouds nearer to the robot by more than chance: "
+          "{:.2f} mm, and {:.2f} mm where {} held (median, halves of the samples); errors of "
+          "the depth may be in {}.  Use --hold {}",
+          fmt::join(names, ", "), 1e3 * medians->first, 1e3 * medians->second,
+          names.size() == 1 ? "it is" : "they are", names.size() == 1 ? "it" : "them",
+          fmt::join(names, ",")));
 }
 
 /// Doubts a camera that stands inside of a link.
@@ -767,7 +951,8 @@ std::vector<double> match_surface(const SurfaceInput& input, Config& config,
     for (const auto& [index, value] : assumed.steps[s].assignments) values[index] = value;
     const std::vector<Sample> heard = detail::heard(matched, input.exclude);
     detail::SurfaceFit fit(input, config, s, blocks);
-    values = fit.run(heard, values, assumed.steps[s].unknown_frames, diagnostics).values;
+    const Eigen::VectorXd start = values;
+    values = fit.run(heard, start, assumed.steps[s].unknown_frames, diagnostics).values;
     const detail::SurfaceRounds rounds(input, config, s, blocks);
     const std::unique_ptr<AnyProblem> problem = rounds.problem_for({});
     std::vector<SurfaceHits> hits;
@@ -776,6 +961,10 @@ std::vector<double> match_surface(const SurfaceInput& input, Config& config,
       const BlockConfig& of = detail::block_of(config.steps[s], blocks[b].name);
       detail::report_fit(blocks[b], of, fit.gate(), hits[b], matched.size(), diagnostics);
       detail::check_camera(blocks[b], of, *problem, matched, values, diagnostics);
+    }
+    if (diagnostics.errors.size() == before) {
+      detail::check_joints(fit, input, config.steps[s], assumed.table, heard, start, values,
+                           diagnostics);
     }
     matched = rounds.matched(matched, hits, fit.gate());
     for (std::size_t b = 0; b < blocks.size(); ++b) {

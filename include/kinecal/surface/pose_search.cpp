@@ -93,7 +93,7 @@ class DistanceGrid {
     }
     const float* base = &squares_[index(first[0], first[1], first[2])];
     const std::ptrdiff_t up = size_[2], over = std::ptrdiff_t{size_[1]} * size_[2];
-    const auto [u, v, w] = part;
+    const double u = part[0], v = part[1], w = part[2];
     const auto line = [&](const float* from) { return from[0] + w * (from[1] - from[0]); };
     const double a = line(base), b = line(base + up), c = line(base + over),
                  d = line(base + over + up);
@@ -183,6 +183,14 @@ class DistanceGrid {
   return middle;
 }
 
+/// So many points, evenly from the list.
+[[nodiscard]] Points some_of(const Points& points, std::size_t most) {
+  Points some;
+  const std::size_t count = std::min(points.size(), most);
+  for (std::size_t i = 0; i < count; ++i) some.push_back(points[i * points.size() / count]);
+  return some;
+}
+
 /// Of each cloud, the points that are away from most of the others.
 [[nodiscard]] std::vector<Points> moved_points(const std::vector<Points>& all) {
   std::vector<std::unordered_set<std::int64_t>> cells(all.size());
@@ -232,13 +240,19 @@ class PoseSearcher {
       }
       grids_.emplace_back(robot);
       clouds.push_back(sample->points);
-      Points& few = clouds_.emplace_back();
-      const std::size_t all = sample->points.size(),
-                        most = std::min(all, static_cast<std::size_t>(search.points));
-      for (std::size_t i = 0; i < most; ++i) few.push_back(sample->points[i * all / most]);
+    }
+    const std::vector<Points> moved = moved_points(clouds);
+    for (std::size_t s = 0; s < clouds.size(); ++s) {  // most of a cloud may be background
+      constexpr std::size_t kFewest = 20;
+      const auto most = static_cast<std::size_t>(search.points);
+      const bool has_moved = moved[s].size() >= kFewest;
+      clouds_.push_back(some_of(clouds[s], has_moved ? most / 2 : most));
+      if (!has_moved) continue;
+      const Points more = some_of(moved[s], most - clouds_.back().size());
+      clouds_.back().insert(clouds_.back().end(), more.begin(), more.end());
     }
     add_middles(robots, clouds);
-    add_middles(moved_points(robots), moved_points(clouds));
+    add_middles(moved_points(robots), moved);
   }
 
   [[nodiscard]] std::vector<Candidate> search() const {

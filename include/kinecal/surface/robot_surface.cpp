@@ -185,11 +185,19 @@ SurfaceHit RobotSurface::closest(std::span<const Pose<double>> base_T_links,
     hit.link = static_cast<int>(i);
   };
   if (last.link >= 0) search(static_cast<std::size_t>(last.link), last.triangle);
+  // The others from the nearest ball about a link on: what is found bounds the next search.
+  std::vector<double> away(links_.size());
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (static_cast<int>(i) == last.link) continue;
     const TriangleTree& tree = links_[i].tree;
-    const double away = (base_T_links[i] * tree.center() - p_base).norm() - tree.radius();
-    if (away < std::min(bound, best.distance)) search(i, -1);
+    away[i] = static_cast<int>(i) == last.link
+                  ? std::numeric_limits<double>::infinity()
+                  : (base_T_links[i] * tree.center() - p_base).norm() - tree.radius();
+  }
+  for (std::size_t n = 0; n < links_.size(); ++n) {
+    const auto next = std::min_element(away.begin(), away.end());
+    if (!(*next < std::min(bound, best.distance))) break;
+    *next = std::numeric_limits<double>::infinity();
+    search(static_cast<std::size_t>(next - away.begin()), -1);
   }
   if (hit.link < 0) return hit;
   const Pose<double>& base_T_link = base_T_links[static_cast<std::size_t>(hit.link)];

@@ -74,8 +74,8 @@ class RobotSurface {
 
 /// What of a URDF is read as a surface.
 struct SurfaceSource {
-  std::string urdf;                                       ///< its name in messages: the file
-  MeshPlaces places;                                      ///< where meshes are
+  std::string urdf = {};                                  ///< its name in messages: the file
+  MeshPlaces places = {};                                 ///< where meshes are
   SurfaceGeometry geometry = SurfaceGeometry::automatic;  ///< which elements
   std::vector<std::string> links = {};  ///< those whose meshes are needed; empty: all that have one
   SourceLocation place = {};            ///< of what needs them, for messages

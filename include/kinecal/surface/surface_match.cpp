@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <utility>
 
@@ -53,6 +54,35 @@ class PosedLinks {
   std::vector<std::pair<const SampledChain*, Corrections<double>>> chains_;
 };
 
+/// The points that are seen, in an order in which neighbours follow each other, so that memory of a tree is read once:
+/// by the triangles that were found before, else by cells of space.
+[[nodiscard]] std::vector<std::size_t> by_place(const std::vector<PlacedFeature>& points,
+                                                const std::vector<SurfaceHit>& before) {
+  constexpr double kCell = 0.03;  // metres
+  std::vector<std::pair<std::uint64_t, std::size_t>> keys;
+  keys.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].seen) continue;
+    std::uint64_t key = 0;
+    if (before[i].link >= 0) {
+      key = (static_cast<std::uint64_t>(before[i].link) << 32) |
+            static_cast<std::uint64_t>(before[i].triangle);
+    } else {
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const double cell = std::clamp(points[i].point[k] / kCell + 1000.0, 0.0, 65535.0);
+        key = (key << 16) | static_cast<std::uint64_t>(cell);
+      }
+      key |= std::uint64_t{1} << 63;
+    }
+    keys.emplace_back(key, i);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::size_t> order;
+  order.reserve(keys.size());
+  for (const auto& [key, i] : keys) order.push_back(i);
+  return order;
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -82,12 +112,14 @@ void associate(const RobotSurface& surface, const SurfacePair& pair, const AnyPr
     const std::vector<Pose<double>> base_T_links = links.in(sample);
     const std::vector<PlacedFeature> points = places.placed(camera, *seen, sample);
     of_sample.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (!points[i].seen) {
-        of_sample[i] = {};
-        continue;
-      }
+    SurfaceHit near;  // what was found for the point before: they are neighbours
+    for (const std::size_t i : detail::by_place(points, of_sample)) {
+      if (of_sample[i].link < 0) of_sample[i] = near;
       of_sample[i] = surface.closest(base_T_links, points[i].point, bound, of_sample[i]);
+      if (of_sample[i].link >= 0) near = of_sample[i];
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!points[i].seen) of_sample[i] = {};
     }
   };
   detail::for_each_piece(static_cast<int>(samples.size()), detail::number_of_threads(threads),

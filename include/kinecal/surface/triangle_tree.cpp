@@ -320,7 +320,11 @@ std::optional<SurfacePoint> TriangleTree::closest(const Vector3<double>& p, doub
   if (nodes_.empty()) return std::nullopt;
   int best = guess;
   double start = bound;
-  if (guess >= 0) start = std::min(start, on_triangle(p, guess).distance);
+  SurfacePoint guessed;
+  if (guess >= 0) {
+    guessed = on_triangle(p, guess);
+    start = std::min(start, guessed.distance);
+  }
   float least = std::min(1e30F, static_cast<float>(start * start) * detail::kSlack);
   const std::array<Lanes, 3> at = {Lanes{} + static_cast<float>(p.x()),
                                    Lanes{} + static_cast<float>(p.y()),
@@ -378,7 +382,7 @@ std::optional<SurfacePoint> TriangleTree::closest(const Vector3<double>& p, doub
     }
   }
   if (best < 0) return std::nullopt;
-  const SurfacePoint found = on_triangle(p, best);
+  const SurfacePoint found = best == guess ? guessed : on_triangle(p, best);
   if (found.distance > bound) return std::nullopt;
   return found;
 }
