@@ -164,7 +164,8 @@ void add_surface_models(ConfigMap& map, const std::string& base, StepConfig& ste
     surface.param_name = surface.name;
     surface.links = block.surface->links;
     surface.is_surface = true;
-    block.models.push_back(surface.name);
+    block.models.insert(
+        block.type == PointToMesh::kType ? block.models.end() : block.models.begin(), surface.name);
     step.models.push_back(std::move(surface));
   }
 }
@@ -189,7 +190,9 @@ void add_surface_models(ConfigMap& map, const std::string& base, StepConfig& ste
     }
     map.error(item.place, "compares model '" + block.models[i] + "' with itself");
   }
-  if (block.type == PointToMesh::kType) block.surface = read_surface_of(map, block);
+  if (block.type == PointToMesh::kType || block.type == PointToOutline::kType) {
+    block.surface = read_surface_of(map, block);
+  }
   if (entry->has_param) block.param = map.required_text("param").value_or("");
   read_block_numbers(map, *entry, block);
   read_block_weighting(map, block);

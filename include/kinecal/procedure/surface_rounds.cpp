@@ -23,6 +23,7 @@
 #include "kinecal/files/urdf/visuals.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/geometry/rotation.hpp"
+#include "kinecal/procedure/outline_rounds.hpp"
 #include "kinecal/surface/pose_search.hpp"
 #include "kinecal/surface/surface_match.hpp"
 #include "kinecal/text/counted.hpp"
@@ -40,127 +41,6 @@ constexpr double kScales = 20.0;     ///< scales of a loss, of the gate with one
 constexpr double kOnRobot = 0.02;    ///< metres: a point within lies on the robot
 constexpr int kFewPoints = 400;      ///< of a sample, in coarse rounds
 constexpr int kFewestPoints = 120;   ///< of a sample, where ends of rounds are compared
-
-/// A block that compares a camera with the surface of the robot.
-struct SurfaceBlock {
-  std::string name;  ///< of the error block
-  SurfacePair pair;
-  RobotSurface surface;
-  bool is_whole = true;  ///< no other link has a mesh, whose points may be near these
-};
-
-[[nodiscard]] const BlockConfig& block_of(const StepConfig& step, const std::string& name) {
-  return *std::find_if(step.error_blocks.begin(), step.error_blocks.end(),
-                       [&](const BlockConfig& block) { return block.name == name; });
-}
-
-/// Reads the surfaces that the blocks of a configuration need, and names their links in it.
-class SurfaceResolver {
- public:
-  SurfaceResolver(const SurfaceInput& input, Config& config, Diagnostics& diagnostics)
-      : input_(input), config_(config), diagnostics_(diagnostics) {}
-
-  /// The blocks of each step.
-  [[nodiscard]] std::vector<std::vector<SurfaceBlock>> read() {
-    std::vector<std::vector<SurfaceBlock>> all;
-    for (StepConfig& step : config_.steps) {
-      std::vector<SurfaceBlock>& blocks = all.emplace_back();
-      for (BlockConfig& block : step.error_blocks) {
-        if (block.surface) blocks.push_back(resolved(step, block));
-      }
-    }
-    return all;
-  }
-
- private:
-  [[nodiscard]] SurfaceBlock resolved(StepConfig& step, BlockConfig& block) {
-    SurfaceConfig& of = *block.surface;
-    SurfaceBlock resolved{block.name, {block.models.at(0), block.models.at(1)}, {}, true};
-    const auto model = [&](const std::string& name) -> ModelConfig& {
-      return *std::find_if(step.models.begin(), step.models.end(),
-                           [&](const ModelConfig& one) { return one.name == name; });
-    };
-    if (!are_links(block, of.links)) return resolved;
-    const std::pair key(of.geometry, of.links);
-    if (const auto known = surfaces_.find(key); known != surfaces_.end()) {
-      resolved.surface = known->second;
-    } else {
-      resolved.surface = read_surface(input_.urdf_text,
-                                      {input_.urdf, mesh_places(input_.urdf, input_.mesh_paths),
-                                       of.geometry == "visual"      ? SurfaceGeometry::visual
-                                       : of.geometry == "collision" ? SurfaceGeometry::collision
-                                                                    : SurfaceGeometry::automatic,
-                                       of.links, block.place},
-                                      diagnostics_);
-      surfaces_.emplace(key, resolved.surface);
-    }
-    if (of.links.empty()) {
-      resolved.surface = without_camera(std::move(resolved.surface), step, block,
-                                        model(resolved.pair.camera).frame);
-    }
-    if (!of.links.empty()) {
-      Diagnostics ignored;
-      std::set<std::string> all;
-      for (const Visual& visual : visuals(input_.urdf_text, input_.urdf, ignored)) {
-        if (visual.shape == VisualShape::mesh) all.insert(visual.link);
-      }
-      resolved.is_whole = all.size() <= resolved.surface.links().size();
-    }
-    std::vector<std::string> links;
-    for (const SurfaceLink& link : resolved.surface.links()) links.push_back(link.name);
-    model(resolved.pair.robot).links = links;
-    return resolved;
-  }
-
-  /// False, with errors, if some link does not exist.
-  [[nodiscard]] bool are_links(const BlockConfig& block, const std::vector<std::string>& links) {
-    const std::size_t before = diagnostics_.errors.size();
-    for (const std::string& link : links) {
-      if (input_.robot.has_link(link)) continue;
-      diagnostics_.error(block.place, fmt::format("error block '{}': no link '{}' in robot '{}'{}",
-                                                  block.name, link, input_.robot.name(),
-                                                  did_you_mean(link, input_.robot.link_names())));
-    }
-    return diagnostics_.errors.size() == before;
-  }
-
-  /// Leaves out what the camera is fixed to: it sees past that, and its pose there is not measured by it.
-  [[nodiscard]] RobotSurface without_camera(RobotSurface surface, const StepConfig& step,
-                                            const BlockConfig& block, const std::string& frame) {
-    std::vector<SurfaceLink> others;
-    std::vector<std::string> left_out;
-    const std::string rig = carrier(step, frame);
-    for (const SurfaceLink& link : surface.links()) {
-      const bool is_carrier = carrier(step, link.name) == rig;
-      if (is_carrier) left_out.push_back(link.name);
-      if (!is_carrier) others.push_back(link);
-    }
-    if (!left_out.empty()) {
-      diagnostics_.note(
-          block.place, fmt::format("error block '{}' leaves out the links that the camera is fixed "
-                                   "to: {}; list them under 'links' to use them",
-                                   block.name, fmt::join(left_out, ", ")));
-    }
-    return RobotSurface(std::move(others));
-  }
-
-  /// The first link up to which a link is fixed by joints that nothing moves or corrects.
-  [[nodiscard]] std::string carrier(const StepConfig& step, std::string link) const {
-    while (input_.robot.has_link(link)) {
-      const Joint* joint = input_.robot.parent_joint(link);
-      if (joint == nullptr || joint->type != JointType::fixed) break;
-      const auto frees = [&](const FreeFrameConfig& frame) { return frame.name == joint->name; };
-      if (std::any_of(step.free_frames.begin(), step.free_frames.end(), frees)) break;
-      link = joint->parent;
-    }
-    return link;
-  }
-
-  const SurfaceInput& input_;
-  Config& config_;
-  Diagnostics& diagnostics_;
-  std::map<std::pair<std::string, std::vector<std::string>>, RobotSurface> surfaces_;
-};
 
 /// How points count in a round.
 struct RoundManner {
@@ -372,77 +252,26 @@ class SurfaceRounds {
   const std::vector<SurfaceBlock>& blocks_;
 };
 
-/// The frame of a camera whose pose is searched for: its chain in two parts.
-class SearchedFrame {
- public:
-  /// @param frame    with six free axes
-  /// @param problem  of the step
-  SearchedFrame(const UnknownFrame& frame, const AnyProblem& problem, const std::string& camera)
-      : frame_(frame), problem_(problem) {
-    for (std::size_t s = 0; s < problem.sensors().size(); ++s) {
-      if (problem.sensors()[s].mount().name == camera) camera_ = static_cast<int>(s);
-    }
-    const RuntimeChain& chain = sensor().chains().front().chain();
-    const auto joint =
-        std::find_if(chain.joints.begin(), chain.joints.end(), [&](const ChainJoint& one) {
-          return one.name == frame.name && one.corrected && !one.reversed;
-        });
-    const bool turns =
-        std::all_of(frame.axes.begin(), frame.axes.end(), [](int p) { return p >= 0; });
-    if (joint == chain.joints.end() || !turns) return;
-    RuntimeChain up_to = chain;
-    up_to.joints.assign(chain.joints.begin(), joint + 1);
-    up_to.tail = {};
-    before_.emplace(problem.robot(), std::move(up_to), problem.table());
+/// The cloud of a sample in a frame whose pose is searched for, and the links before it.
+[[nodiscard]] PosedCloud posed_cloud(const SearchedFrame& frame, const AnyProblem& problem,
+                                     const SurfaceBlock& block, const Sample& sample,
+                                     const Eigen::VectorXd& values) {
+  PosedCloud posed;
+  const Observation* seen = sample.observation(block.pair.camera);
+  if (seen == nullptr) return posed;
+  const Eigen::VectorXd zero = frame.zeroed(values);
+  const Pose<double> before_T_base = frame.before(sample, zero).inverse();
+  const FeaturePlaces places(problem, SurfaceRounds::span_of(zero));
+  for (const PlacedFeature& point : places.placed(frame.camera_number(), *seen, sample)) {
+    if (point.seen) posed.points.push_back(before_T_base * point.point);
   }
-
-  /// False if no pose can be searched for.
-  [[nodiscard]] bool is_usable() const { return before_.has_value(); }
-
-  /// The cloud of a sample in the frame, and the links before it.
-  [[nodiscard]] PosedCloud posed(const RobotSurface& surface, const SurfacePair& pair,
-                                 const Sample& sample, const Eigen::VectorXd& values) const {
-    Eigen::VectorXd zero = values;
-    for (const int p : frame_.axes) zero[p] = 0.0;
-    const ParameterValues at = SurfaceRounds::span_of(zero);
-    const Pose<double> before_T_base =
-        before_->tip(sample, corrections_for(before_->parameters(), at)).inverse();
-    PosedCloud posed;
-    const Observation* seen = sample.observation(pair.camera);
-    if (seen == nullptr) return posed;
-    for (const PlacedFeature& point : FeaturePlaces(problem_, at).placed(camera_, *seen, sample)) {
-      if (point.seen) posed.points.push_back(before_T_base * point.point);
-    }
-    for (const Pose<double>& link : link_poses(surface, pair, problem_, at, sample)) {
-      posed.links.push_back(before_T_base * link);
-    }
-    return posed;
-  }
-
-  /// Values with the frame in a pose.
-  [[nodiscard]] Eigen::VectorXd with(const Pose<double>& pose, Eigen::VectorXd values) const {
-    const Vector3<double> turn = log(pose.rotation);
-    for (std::size_t k = 0; k < 3; ++k) {
-      values[frame_.axes[k]] = pose.translation[static_cast<Eigen::Index>(k)];
-      values[frame_.axes[k + 3]] = turn[static_cast<Eigen::Index>(k)];
-    }
-    return values;
-  }
-
- private:
-  [[nodiscard]] const MountedSensor& sensor() const {
-    return problem_.sensors()[static_cast<std::size_t>(camera_)];
-  }
-
-  const UnknownFrame& frame_;
-  const AnyProblem& problem_;
-  int camera_ = 0;
-  std::optional<SampledChain> before_;
-};
+  posed.links = frame.links(block, sample, zero);
+  return posed;
+}
 
 /// How well the points of a block lie on the robot.
 struct SurfaceQuality {
-  std::vector<double> distances;             ///< of all points, metres; infinite beyond the bound
+  std::vector<double> distances;              ///< of all points, metres; infinite beyond the bound
   std::vector<std::vector<double>> of_links;  ///< of those nearest to each link
 
   [[nodiscard]] double share(double within) const { return share_of(distances, within); }
@@ -516,7 +345,8 @@ class SurfaceFit {
         found = end.values;
       }
       if (found) {
-        best = coarse(near(samples, *found, kFewPoints), *found, {.gates = {0.06, 0.03}, .rounds = 3});
+        best =
+            coarse(near(samples, *found, kFewPoints), *found, {.gates = {0.06, 0.03}, .rounds = 3});
       }
       if (is_lost && best) {
         diagnostics.notes.push_back("the pose of '" + unknown.front().name +
@@ -658,7 +488,7 @@ class SurfaceFit {
         if (!searched.is_usable()) continue;
         std::vector<PosedCloud> clouds;
         for (const Sample& sample : samples) {
-          clouds.push_back(searched.posed(block.surface, block.pair, sample, start));
+          clouds.push_back(posed_cloud(searched, *problem, block, sample, start));
         }
         for (const Pose<double>& pose : find_poses(block.surface, clouds)) {
           all.push_back(searched.with(pose, start));
@@ -723,7 +553,8 @@ class SurfaceFit {
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const auto [on, near] = counts[i];
     if (near < kFewest || on >= kPoor * near) continue;
-    text += fmt::format("{} '{}' ({:.0f} %)", text.empty() ? "; few of the points near them lie on" : ",",
+    text += fmt::format("{} '{}' ({:.0f} %)",
+                        text.empty() ? "; few of the points near them lie on" : ",",
                         surface.links()[i].name, 100.0 * on / near);
   }
   return text;
@@ -740,17 +571,16 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
                   block.pair.camera, counted(samples, "sample"));
   constexpr double kFewest = 0.01;
   if (on < kFewest || quality.contrast() < 1.0) {
-    const std::string why =
-        fmt::format(
-            "error block '{}': the points do not lie on the robot.  Of {}, {:.1f} % are "
-            "within {:.0f} mm of its surface after the best fit, and of those within {:.0f} "
-            "mm {:.0f} % within {:.0f} mm: hardly more than by chance.  Are these clouds of this "
-            "robot, in metres, in the frame of the camera, with the joints of the same time?  "
-            "If the camera's pose is far off, leave its initial values out: then it is "
-            "searched for",
-            of.name, cloud, 100.0 * on, 1e3 * kOnRobot, 2.5e3 * kOnRobot,
-            100.0 * quality.share(kOnRobot / 2.0) / std::max(1e-12, quality.share(2.5 * kOnRobot)),
-            0.5e3 * kOnRobot);
+    const std::string why = fmt::format(
+        "error block '{}': the points do not lie on the robot.  Of {}, {:.1f} % are "
+        "within {:.0f} mm of its surface after the best fit, and of those within {:.0f} "
+        "mm {:.0f} % within {:.0f} mm: hardly more than by chance.  Are these clouds of this "
+        "robot, in metres, in the frame of the camera, with the joints of the same time?  "
+        "If the camera's pose is far off, leave its initial values out: then it is "
+        "searched for",
+        of.name, cloud, 100.0 * on, 1e3 * kOnRobot, 2.5e3 * kOnRobot,
+        100.0 * quality.share(kOnRobot / 2.0) / std::max(1e-12, quality.share(2.5 * kOnRobot)),
+        0.5e3 * kOnRobot);
     // Points of links that are not listed may be near the listed ones.
     block.is_whole ? diagnostics.error(of.place, why) : diagnostics.doubt(of.place, why);
     return;
@@ -892,9 +722,10 @@ void check_units(const SurfaceBlock& block, std::span<const Sample> samples,
       if (seen == nullptr) continue;
       Observation robot{.sensor = block.pair.robot, .features = {}};
       for (const Feature& feature : seen->features) {
-        robot.features.push_back({.frame = base,
-                                  .id = feature.id,
-                                  .conditions = {{"nx", 0.0}, {"ny", 0.0}, {"nz", 1.0}}});
+        robot.features.push_back(
+            {.frame = base,
+             .id = feature.id,
+             .conditions = {{"nx", 0.0}, {"ny", 0.0}, {"nz", 1.0}, {"nu", 1.0}, {"nv", 0.0}}});
       }
       sample.observations.push_back(std::move(robot));
     }
@@ -902,15 +733,32 @@ void check_units(const SurfaceBlock& block, std::span<const Sample> samples,
   return all;
 }
 
-/// The samples without those that are excluded.
-[[nodiscard]] std::vector<Sample> heard(std::span<const Sample> samples,
-                                        const std::vector<int>& exclude) {
-  const std::set<int> numbers(exclude.begin(), exclude.end());
-  std::vector<Sample> others;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (!numbers.contains(static_cast<int>(i) + 1)) others.push_back(samples[i]);
+/// Associates the clouds of a step.
+/// @param values  in: where rounds begin; out: where they ended
+void match_clouds(const SurfaceInput& input, Config& config, std::size_t step,
+                  const std::vector<SurfaceBlock>& blocks, const Calibration& assumed,
+                  std::vector<Sample>& samples, Eigen::VectorXd& values, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.errors.size();
+  const std::vector<Sample> heard = heard_samples(samples, input.exclude);
+  SurfaceFit fit(input, config, step, blocks);
+  const Eigen::VectorXd start = values;
+  values = fit.run(heard, start, assumed.steps[step].unknown_frames, diagnostics).values;
+  const SurfaceRounds rounds(input, config, step, blocks);
+  const std::unique_ptr<AnyProblem> problem = rounds.problem_for({});
+  std::vector<SurfaceHits> hits;
+  rounds.associate(*problem, samples, values, std::numeric_limits<double>::infinity(), hits);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const BlockConfig& of = block_of(config.steps[step], blocks[b].name);
+    report_fit(blocks[b], of, fit.gate(), hits[b], samples.size(), diagnostics);
+    check_camera(blocks[b], of, *problem, samples, values, diagnostics);
   }
-  return others;
+  if (diagnostics.errors.size() == before) {
+    check_joints(fit, input, config.steps[step], assumed.table, heard, start, values, diagnostics);
+  }
+  samples = rounds.matched(samples, hits, fit.gate());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    keep_loss(blocks[b].name, hits[b], fit.gate(), config.steps[step]);
+  }
 }
 
 }  // namespace
@@ -926,49 +774,37 @@ bool compares_surface(const Config& config) {
 std::vector<double> match_surface(const SurfaceInput& input, Config& config,
                                   std::vector<Sample>& samples, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
-  const std::vector<std::vector<detail::SurfaceBlock>> steps =
-      detail::SurfaceResolver(input, config, diagnostics).read();
+  const std::vector<std::vector<SurfaceBlock>> steps =
+      read_surface_blocks(input, config, diagnostics);
   if (diagnostics.errors.size() > before || samples.empty()) return {};
   Eigen::VectorXd values;
   std::vector<Sample> matched = samples;
   for (std::size_t s = 0; s < steps.size(); ++s) {
-    const std::vector<detail::SurfaceBlock>& blocks = steps[s];
-    if (blocks.empty()) continue;
-    for (const detail::SurfaceBlock& block : blocks) {
+    std::vector<SurfaceBlock> clouds, masks;
+    for (const SurfaceBlock& block : steps[s]) (block.is_outline ? masks : clouds).push_back(block);
+    if (steps[s].empty()) continue;
+    for (const SurfaceBlock& block : clouds) {
       detail::check_units(block, samples, diagnostics);
-      const int most = detail::block_of(config.steps[s], block.name).surface->points;
+      const int most = block_of(config.steps[s], block.name).surface->points;
       matched = with_fewer_points(matched, block.pair.camera, most);
     }
     if (diagnostics.errors.size() > before) return {};
     Diagnostics quiet;
     const Calibration assumed = assemble(
-        config, input.robot, detail::assumed_samples(blocks, matched, config.base_link), quiet);
+        config, input.robot, detail::assumed_samples(steps[s], matched, config.base_link), quiet);
     if (!quiet.errors.empty()) {
       diagnostics.errors.insert(diagnostics.errors.end(), quiet.errors.begin(), quiet.errors.end());
       return {};
     }
     if (values.size() == 0) values = assumed.table.values();
     for (const auto& [index, value] : assumed.steps[s].assignments) values[index] = value;
-    const std::vector<Sample> heard = detail::heard(matched, input.exclude);
-    detail::SurfaceFit fit(input, config, s, blocks);
-    const Eigen::VectorXd start = values;
-    values = fit.run(heard, start, assumed.steps[s].unknown_frames, diagnostics).values;
-    const detail::SurfaceRounds rounds(input, config, s, blocks);
-    const std::unique_ptr<AnyProblem> problem = rounds.problem_for({});
-    std::vector<SurfaceHits> hits;
-    rounds.associate(*problem, matched, values, std::numeric_limits<double>::infinity(), hits);
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      const BlockConfig& of = detail::block_of(config.steps[s], blocks[b].name);
-      detail::report_fit(blocks[b], of, fit.gate(), hits[b], matched.size(), diagnostics);
-      detail::check_camera(blocks[b], of, *problem, matched, values, diagnostics);
+    std::span<const UnknownFrame> unknown = assumed.steps[s].unknown_frames;
+    if (!clouds.empty()) {
+      detail::match_clouds(input, config, s, clouds, assumed, matched, values, diagnostics);
+      unknown = {};
     }
-    if (diagnostics.errors.size() == before) {
-      detail::check_joints(fit, input, config.steps[s], assumed.table, heard, start, values,
-                           diagnostics);
-    }
-    matched = rounds.matched(matched, hits, fit.gate());
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      detail::keep_loss(blocks[b].name, hits[b], fit.gate(), config.steps[s]);
+    if (!masks.empty() && diagnostics.errors.size() == before) {
+      match_outlines(input, config, s, masks, matched, values, unknown, diagnostics);
     }
   }
   if (diagnostics.errors.size() > before) return {};

@@ -14,20 +14,10 @@
 
 #include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/procedure/surface_blocks.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
-
-/// What rounds of association need beside a configuration and its samples.
-struct SurfaceInput {
-  const Robot& robot;
-  std::string urdf_text;                ///< of the robot
-  std::string urdf;                     ///< its name: meshes are relative to it
-  std::vector<std::string> mesh_paths;  ///< further folders of packages
-  std::vector<int> exclude = {};        ///< numbers of samples that have no say, from 1
-  int threads = 0;                      ///< zero: one per core; does not affect the result
-};
 
 /// True if an error block compares points with the surface of the robot.
 [[nodiscard]] bool compares_surface(const Config& config);

@@ -29,7 +29,8 @@ namespace {
 [[nodiscard]] bool judges_wholes(const AnyProblem& problem) {
   bool clouds = false;
   for (int t = 0; t < problem.num_terms(); ++t) {
-    clouds = clouds || problem.term(t).options.type == PointToMesh::kType;
+    const std::string& type = problem.term(t).options.type;
+    clouds = clouds || type == PointToMesh::kType || type == PointToOutline::kType;
   }
   return clouds || !problem.sample_poses().empty();
 }
