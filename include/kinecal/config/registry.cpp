@@ -134,10 +134,10 @@ Registry::Registry() {
       }));
   add(built_in_block<PointToMesh>({{"model", "model_a", "camera"}, {}}, {{"scale", 1.0}},
                                   [](const BlockConfig&) { return PointToMesh{}; }));
-  add(built_in_block<PointToOutline>({{}, {"model", "model_2d", "camera"}}, {{"scale", 1.0}},
-                                     [](const BlockConfig&) { return PointToOutline{}; }));
   add(detail::prior_entry());
   for (BlockEntry& entry : blocks_) entry.is_upstream = true;
+  add(built_in_block<PointToOutline>({{}, {"model", "model_2d", "camera"}}, {{"scale", 1.0}},
+                                     [](const BlockConfig&) { return PointToOutline{}; }));
   add(built_in_block<PointDistance>(
       pair, {{"length", 0.0}, {"scale", 1.0}},
       [](const BlockConfig& block) { return PointDistance{detail::length_of(block, "length")}; }));
