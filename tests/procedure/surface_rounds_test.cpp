@@ -131,8 +131,8 @@ TEST_F(SurfaceRoundsOfAnArm, DoNotDependOnTheNumberOfThreads) {
 }
 
 TEST_F(SurfaceRoundsOfAnArm, UseTheLinksThatAreListed) {
-  const PreparedCalibration prepared =
-      prepare(setup(test::mesh_config(kStart, ", link_names: [base, upper, fore]"), {.noise = 0.001}));
+  const PreparedCalibration prepared = prepare(
+      setup(test::mesh_config(kStart, ", link_names: [base, upper, fore]"), {.noise = 0.001}));
   ASSERT_THAT(prepared.diagnostics.errors, IsEmpty());
   for (const Feature& feature : prepared.samples[0].observation("camera_surface")->features) {
     EXPECT_NE(feature.frame, "hand");

@@ -115,10 +115,10 @@ struct BlockConfig {
   std::optional<bool> exclusive = {};
   std::string ground;  ///< camera3d_to_ground: only samples with an observation of this sensor
   std::optional<double> sigma =
-      {};                ///< standard deviation, units of the residual; empty: not given
-  LossConfig loss;       ///< of each feature
+      {};           ///< standard deviation, units of the residual; empty: not given
+  LossConfig loss;  ///< of each feature
   std::optional<SurfaceConfig> surface = {};  ///< of chain3d_to_mesh
-  SourceLocation place;  ///< where the file defines it
+  SourceLocation place;                       ///< where the file defines it
   /// Its type, where a program brings its own; nullptr: the one that the registry has by this name.
   std::shared_ptr<const BlockEntry> own = nullptr;
 };

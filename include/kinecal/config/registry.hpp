@@ -78,7 +78,7 @@ template <Sensor M, class Add>
 
 /// A sensor of an error block in configurations.
 struct BlockSensorEntry {
-  std::vector<std::string> keys;        ///< the usual one first: "model_a"; none: the robot's surface
+  std::vector<std::string> keys;  ///< the usual one first: "model_a"; none: the robot's surface
   Quantity quantity = Quantity::point;  ///< the block's input from it
 };
 

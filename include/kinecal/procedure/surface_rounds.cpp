@@ -442,7 +442,7 @@ class SearchedFrame {
 
 /// How well the points of a block lie on the robot.
 struct SurfaceQuality {
-  std::vector<double> distances;             ///< of all points, metres; infinite beyond the bound
+  std::vector<double> distances;              ///< of all points, metres; infinite beyond the bound
   std::vector<std::vector<double>> of_links;  ///< of those nearest to each link
 
   [[nodiscard]] double share(double within) const { return share_of(distances, within); }
@@ -516,7 +516,8 @@ class SurfaceFit {
         found = end.values;
       }
       if (found) {
-        best = coarse(near(samples, *found, kFewPoints), *found, {.gates = {0.06, 0.03}, .rounds = 3});
+        best =
+            coarse(near(samples, *found, kFewPoints), *found, {.gates = {0.06, 0.03}, .rounds = 3});
       }
       if (is_lost && best) {
         diagnostics.notes.push_back("the pose of '" + unknown.front().name +
@@ -754,7 +755,8 @@ class SurfaceFit {
         const Vector3<double> normal =
             links[l].rotation * Vector3<double>((b - a).cross(c - a).normalized());
         const Vector3<double> ray = p - eye;
-        const bool is_front = (camera_T_base * p).z() > 0.0 && -normal.dot(ray) > kFacing * ray.norm();
+        const bool is_front =
+            (camera_T_base * p).z() > 0.0 && -normal.dot(ray) > kFacing * ray.norm();
         if (!is_front || (sight(p) < low).any() || (sight(p) > high).any()) continue;
         if (block.surface.cast(links, eye, ray).distance < 1.0 - kHidden / ray.norm()) continue;
         ++visible[l];
@@ -785,10 +787,11 @@ void check_coverage(const SurfaceBlock& block, const BlockConfig& of, const AnyP
   if (covered >= kRefused) return;
   diagnostics.error(
       of.place,
-      fmt::format("error block '{}': from where the fit puts the camera of sensor '{}' it should see "
-                  "the robot, but measured points near {:.0f} % of that surface only.  Are the joints "
-                  "those of the clouds, and is the robot in view?",
-                  of.name, block.pair.camera, 100.0 * covered));
+      fmt::format(
+          "error block '{}': from where the fit puts the camera of sensor '{}' it should see "
+          "the robot, but measured points near {:.0f} % of that surface only.  Are the joints "
+          "those of the clouds, and is the robot in view?",
+          of.name, block.pair.camera, 100.0 * covered));
 }
 
 /// "; least well on 'link_7': 56 % of the points near it lie on it": something that no mesh has, or a joint that is off.
@@ -808,7 +811,8 @@ void check_coverage(const SurfaceBlock& block, const BlockConfig& of, const AnyP
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const auto [on, near] = counts[i];
     if (near < kFewest || on >= kPoor * near) continue;
-    text += fmt::format("{} '{}' ({:.0f} %)", text.empty() ? "; few of the points near them lie on" : ",",
+    text += fmt::format("{} '{}' ({:.0f} %)",
+                        text.empty() ? "; few of the points near them lie on" : ",",
                         surface.links()[i].name, 100.0 * on / near);
   }
   return text;
@@ -825,17 +829,16 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
                   block.pair.camera, counted(samples, "sample"));
   constexpr double kFewest = 0.01;
   if (on < kFewest || quality.contrast() < 1.0) {
-    const std::string why =
-        fmt::format(
-            "error block '{}': the points do not lie on the robot.  Of {}, {:.1f} % are "
-            "within {:.0f} mm of its surface after the best fit, and of those within {:.0f} "
-            "mm {:.0f} % within {:.0f} mm: hardly more than by chance.  Are these clouds of this "
-            "robot, in metres, in the frame of the camera, with the joints of the same time?  "
-            "If the camera's pose is far off, leave its initial values out: then it is "
-            "searched for",
-            of.name, cloud, 100.0 * on, 1e3 * kOnRobot, 2.5e3 * kOnRobot,
-            100.0 * quality.share(kOnRobot / 2.0) / std::max(1e-12, quality.share(2.5 * kOnRobot)),
-            0.5e3 * kOnRobot);
+    const std::string why = fmt::format(
+        "error block '{}': the points do not lie on the robot.  Of {}, {:.1f} % are "
+        "within {:.0f} mm of its surface after the best fit, and of those within {:.0f} "
+        "mm {:.0f} % within {:.0f} mm: hardly more than by chance.  Are these clouds of this "
+        "robot, in metres, in the frame of the camera, with the joints of the same time?  "
+        "If the camera's pose is far off, leave its initial values out: then it is "
+        "searched for",
+        of.name, cloud, 100.0 * on, 1e3 * kOnRobot, 2.5e3 * kOnRobot,
+        100.0 * quality.share(kOnRobot / 2.0) / std::max(1e-12, quality.share(2.5 * kOnRobot)),
+        0.5e3 * kOnRobot);
     // Points of links that are not listed may be near the listed ones.
     block.is_whole ? diagnostics.error(of.place, why) : diagnostics.doubt(of.place, why);
     return;

@@ -55,9 +55,9 @@ struct SettingsError : std::invalid_argument {
 
 /// Where a sensor is mounted on the robot, and its names.
 struct Mount {
-  std::string name;             ///< of the sensor, as in the samples
-  std::string frame;            ///< the link to which it is fixed
-  std::string param_name = {};  ///< prefix of its parameters; empty: its name
+  std::string name;                     ///< of the sensor, as in the samples
+  std::string frame;                    ///< the link to which it is fixed
+  std::string param_name = {};          ///< prefix of its parameters; empty: its name
   std::vector<std::string> links = {};  ///< further links in which its features may be given
 
   /// Prefix of its parameters: "camera" of "camera_fx".

@@ -44,10 +44,9 @@ class VisualReader {
         try {
           visuals.push_back(read(link, visual));
         } catch (const NoVisual& no) {
-          diagnostics_.warning(urdf_.place(visual), "link '" +
-                                                        printable(link.attribute("name").value()) +
-                                                        "': its <" + element_ + "> is not drawn: " +
-                                                        no.why);
+          diagnostics_.warning(urdf_.place(visual),
+                               "link '" + printable(link.attribute("name").value()) + "': its <" +
+                                   element_ + "> is not drawn: " + no.why);
         }
       }
     }
