@@ -29,13 +29,13 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-constexpr double kNarrowest = 3.0;             ///< pixels, of a gate without a loss
-constexpr double kScales = 20.0;               ///< scales of a loss, of the gate with one
-constexpr double kOnRobot = 5.0;               ///< pixels: an edge within belongs to the robot
+constexpr double kNarrowestGate = 3.0;         ///< pixels, of a gate without a loss
+constexpr double kLossScales = 20.0;           ///< scales of a loss, of the gate with one
+constexpr double kOnOutline = 5.0;             ///< pixels: an edge within belongs to the robot
 constexpr int kFewEdges = 300;                 ///< of a sample, in coarse rounds
 constexpr std::size_t kSimpleTriangles = 600;  ///< of a link, in coarse rounds
 
-[[nodiscard]] ParameterValues span_of(const Eigen::VectorXd& values) {
+[[nodiscard]] ParameterValues values_of_all(const Eigen::VectorXd& values) {
   return {values.data(), static_cast<std::size_t>(values.size())};
 }
 
@@ -120,9 +120,9 @@ class OutlineRounds {
                                                     bool is_simple) const {
     std::vector<OutlineHits> hits;
     for (const OutlineBlock& block : blocks_) {
-      hits.push_back(kinecal::match_outlines(is_simple ? block.simple : block.fine,
-                                             block.of->surface, block.of->pair, problem,
-                                             span_of(values), samples, bound, input_.threads));
+      hits.push_back(kinecal::match_outlines(
+          is_simple ? block.simple : block.fine, block.of->surface, block.of->pair, problem,
+          values_of_all(values), samples, bound, input_.threads));
     }
     return hits;
   }
@@ -155,8 +155,8 @@ class OutlineRounds {
     if (state.free.empty()) return state;
     const FreeSet free(state.free, problem->table().size());
     state.free = free.parameters();
-    state.sums =
-        normal_equations(*problem, span_of(state.values), &free, Losses::as_given, input_.threads);
+    state.sums = normal_equations(*problem, values_of_all(state.values), &free, Losses::as_given,
+                                  input_.threads);
     state.cost = state.sums.cost + cost_beyond(*problem, manner.gate, state.hits);
     if (!std::isfinite(state.cost)) state.cost = std::numeric_limits<double>::infinity();
     return state;
@@ -240,7 +240,7 @@ class OutlineRounds {
   const MountedSensor& camera = in_chain.camera();
   const SampledChain& chain = camera.chains().front();
   const Eigen::VectorXd zero = in_chain.zeroed(start);
-  const std::vector<double> own = camera.own_values(span_of(zero));
+  const std::vector<double> own = camera.own_values(values_of_all(zero));
   std::vector<PosedMask> masks;
   std::optional<Pose<double>> frame_T_camera;
   for (const Sample& sample : samples) {
@@ -252,7 +252,7 @@ class OutlineRounds {
       return Eigen::Vector2d(ray.x() / ray.z(), ray.y() / ray.z());
     };
     frame_T_camera = in_chain.before(sample, zero).inverse() *
-                     chain.tip(sample, corrections_for(chain.parameters(), span_of(zero)));
+                     chain.tip(sample, corrections_for(chain.parameters(), values_of_all(zero)));
     PosedMask& mask = masks.emplace_back();
     mask.low = ideal(0.0, 0.0);
     mask.high = ideal(seen->camera->width - 1.0, seen->camera->height - 1.0);
@@ -336,11 +336,11 @@ class OutlineFit {
   [[nodiscard]] double on_robot(std::span<const Sample> few, const OutlineState& state) const {
     double least = 1.0;
     const auto hits =
-        rounds_.associated(*rounds_.problem_for({}), few, state.values, 2.0 * kOnRobot, true);
+        rounds_.associated(*rounds_.problem_for({}), few, state.values, 2.0 * kOnOutline, true);
     for (std::size_t b = 0; b < hits.size(); ++b) {
       const std::string& camera = rounds_.blocks()[b].of->pair.camera;
-      least = std::min({least, share_within(distances_of(hits[b], few, camera, true), kOnRobot),
-                        share_within(distances_of(hits[b], few, camera, false), kOnRobot)});
+      least = std::min({least, share_within(distances_of(hits[b], few, camera, true), kOnOutline),
+                        share_within(distances_of(hits[b], few, camera, false), kOnOutline)});
     }
     return least;
   }
@@ -353,7 +353,7 @@ class OutlineFit {
       scale = std::max(scale, block.loss.scale * block.sigma.value_or(1.0));
     }
     if (scale > 0.0) {
-      gate_ = kScales * scale;
+      gate_ = kLossScales * scale;
       return rounds_.run({.gate = gate_, .rounds = kMost}, samples, values);
     }
     gate_ = 12.0;
@@ -370,7 +370,7 @@ class OutlineFit {
       }
       if (near.empty()) break;
       constexpr double kRobust = 4.0 * 1.4826;
-      const double next = std::clamp(kRobust * median_of(std::move(near)), kNarrowest, gate_);
+      const double next = std::clamp(kRobust * median_of(std::move(near)), kNarrowestGate, gate_);
       const bool is_settled = next > 0.99 * gate_;
       gate_ = next;
       if (is_settled) break;
@@ -397,11 +397,11 @@ class OutlineFit {
   }
   std::string text;
   for (std::size_t l = 0; l < of_links.size(); ++l) {
-    if (of_links[l].size() < kFewest || share_within(of_links[l], kOnRobot) > kOften) continue;
+    if (of_links[l].size() < kFewest || share_within(of_links[l], kOnOutline) > kOften) continue;
     const double median = median_of(of_links[l]);
     text += fmt::format("{} link '{}' ({:.0f} % of its outline within {:.0f} px, {})",
                         text.empty() ? "; off in most masks:" : ",", block.surface.links()[l].name,
-                        100.0 * share_within(of_links[l], kOnRobot), kOnRobot,
+                        100.0 * share_within(of_links[l], kOnOutline), kOnOutline,
                         std::isfinite(median) ? fmt::format("median {:.1f} px", median)
                                               : std::string("most of it has no edge near"));
   }
@@ -415,8 +415,8 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
   const std::vector<double> edges = distances_of(hits, samples, block.pair.camera, true),
                             outline = distances_of(hits, samples, block.pair.camera, false);
   if (edges.empty()) return;  // assemble() says so
-  const double on_edges = share_within(edges, kOnRobot),
-               on_outline = share_within(outline, kOnRobot);
+  const double on_edges = share_within(edges, kOnOutline),
+               on_outline = share_within(outline, kOnOutline);
   const std::string masks =
       fmt::format("{} of masks of sensor '{}' in {}", counted(edges.size(), "edge"),
                   block.pair.camera, counted(samples.size(), "sample"));
@@ -430,7 +430,7 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
             "{:.0f} px of them.  Are these masks of this robot (255: robot), of this camera, "
             "with the joints of the same images?  If the camera's pose is far off, leave its "
             "initial values out: then it is searched for",
-            of.name, masks, 100.0 * on_edges, kOnRobot, 100.0 * on_outline, kOnRobot));
+            of.name, masks, 100.0 * on_edges, kOnOutline, 100.0 * on_outline, kOnOutline));
     return;
   }
   const LossType type = loss_type(of.loss.type);
@@ -447,8 +447,8 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
       "{:.1f} % of the outline within {:.0f} px of an edge, median {:.3f} px; what is within "
       "{:.4g} "
       "px counts",
-      of.name, masks, 100.0 * on_edges, kOnRobot, median_of(edges), 100.0 * on_outline, kOnRobot,
-      median_of(outline), gate);
+      of.name, masks, 100.0 * on_edges, kOnOutline, median_of(edges), 100.0 * on_outline,
+      kOnOutline, median_of(outline), gate);
   if (type != LossType::none) text += fmt::format(", cost {:.1f}", cost);
   diagnostics.note(of.place, text + links_off(block, hits, samples));
 }

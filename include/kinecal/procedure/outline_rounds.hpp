@@ -4,7 +4,7 @@
 //    gate.  Where the pose of a camera is unknown, or the start ends badly, poses are searched for first
 //    (surface/mask_search.hpp).
 // 2. Fine rounds on all edges with the loss of the configuration: Levenberg-Marquardt on the true distances, until cost and
-//    associations settle.  Without a loss, what is beyond four robust sigmas (at least kNarrowest) counts as strangers.
+//    associations settle.  Without a loss, what is beyond four robust sigmas (at least kNarrowestGate) counts as strangers.
 // 3. The samples get points of the outline as an ordinary observation, and the edges that belong to them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

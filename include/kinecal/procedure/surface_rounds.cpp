@@ -536,6 +536,93 @@ class SurfaceFit {
   double gate_ = kWidest;
 };
 
+/// Of the surface that the camera should see, the share with a measured point near it, in the mean of the links; 1 if it
+/// should see hardly any.  The clouds say how far the camera sees to the sides.
+[[nodiscard]] double coverage(const SurfaceBlock& block, const AnyProblem& problem,
+                              std::span<const Sample> samples, const Eigen::VectorXd& values) {
+  constexpr double kNear = 0.04, kFacing = 0.3, kHidden = 0.02;  // metres; cosine; metres
+  constexpr int kFaces = 60, kFewest = 20;                       // of a link and sample; of a link
+  const ParameterValues at = SurfaceRounds::span_of(values);
+  const FeaturePlaces places(problem, at);
+  const auto camera = std::find_if(
+      problem.sensors().begin(), problem.sensors().end(),
+      [&](const MountedSensor& sensor) { return sensor.mount().name == block.pair.camera; });
+  const SampledChain& chain = camera->chains().front();
+  const auto cell = [&](const Vector3<double>& p, const Eigen::Vector3i& shift) {
+    const Eigen::Vector3i c = (p / kNear).array().floor().cast<int>().matrix() + shift;
+    return std::array<int, 3>{c.x(), c.y(), c.z()};
+  };
+  std::vector<int> visible(block.surface.links().size(), 0), covered = visible;
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(block.pair.camera);
+    if (seen == nullptr || seen->features.empty()) continue;
+    const Pose<double> camera_T_base =
+        chain.tip(sample, corrections_for(chain.parameters(), at)).inverse();
+    std::set<std::array<int, 3>> cells;
+    Eigen::Array2d low = Eigen::Array2d::Constant(1e9), high = -low;
+    const auto sight = [&](const Vector3<double>& p_base) {
+      const Vector3<double> p = camera_T_base * p_base;
+      return Eigen::Array2d(p.x() / p.z(), p.y() / p.z());
+    };
+    Vector3<double> eye = Vector3<double>::Zero();
+    for (const PlacedFeature& point :
+         places.placed(static_cast<int>(camera - problem.sensors().begin()), *seen, sample)) {
+      if (!point.seen) continue;
+      eye = point.origin;
+      cells.insert(cell(point.point, Eigen::Vector3i::Zero()));
+      low = low.min(sight(point.point));
+      high = high.max(sight(point.point));
+    }
+    const std::vector<Pose<double>> links =
+        link_poses(block.surface, block.pair, problem, at, sample);
+    for (std::size_t l = 0; l < links.size(); ++l) {
+      const TriangleTree& tree = block.surface.links()[l].tree;
+      for (int f = 0; f < kFaces; ++f) {
+        const auto& [a, b, c] =
+            tree.corners(static_cast<int>(static_cast<std::ptrdiff_t>(f) * tree.count() / kFaces));
+        const Vector3<double> p = links[l] * Vector3<double>((a + b + c) / 3.0);
+        const Vector3<double> normal =
+            links[l].rotation * Vector3<double>((b - a).cross(c - a).normalized());
+        const Vector3<double> ray = p - eye;
+        const bool is_front =
+            (camera_T_base * p).z() > 0.0 && -normal.dot(ray) > kFacing * ray.norm();
+        if (!is_front || (sight(p) < low).any() || (sight(p) > high).any()) continue;
+        if (block.surface.cast(links, eye, ray).distance < 1.0 - kHidden / ray.norm()) continue;
+        ++visible[l];
+        bool is_near = false;
+        for (int n = 0; n < 27 && !is_near; ++n) {
+          is_near = cells.contains(cell(p, {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1}));
+        }
+        covered[l] += is_near ? 1 : 0;
+      }
+    }
+  }
+  double sum = 0.0;
+  int links = 0;
+  for (std::size_t l = 0; l < visible.size(); ++l) {
+    if (visible[l] < kFewest) continue;
+    sum += static_cast<double>(covered[l]) / visible[l];
+    ++links;
+  }
+  return links == 0 ? 1.0 : sum / links;
+}
+
+/// Refuses a pose from which the camera should see much of the robot where it measured nothing.
+void check_coverage(const SurfaceBlock& block, const BlockConfig& of, const AnyProblem& problem,
+                    std::span<const Sample> samples, const Eigen::VectorXd& values,
+                    Diagnostics& diagnostics) {
+  constexpr double kRefused = 0.75;
+  const double covered = coverage(block, problem, samples, values);
+  if (covered >= kRefused) return;
+  diagnostics.error(
+      of.place,
+      fmt::format(
+          "error block '{}': from where the fit puts the camera of sensor '{}' it should see "
+          "the robot, but measured points near {:.0f} % of that surface only.  Are the joints "
+          "those of the clouds, and is the robot in view?",
+          of.name, block.pair.camera, 100.0 * covered));
+}
+
 /// "; least well on 'link_7': 56 % of the points near it lie on it": something that no mesh has, or a joint that is off.
 [[nodiscard]] std::string links_off(const RobotSurface& surface, const SurfaceHits& hits) {
   constexpr double kPoor = 0.6;
@@ -751,6 +838,9 @@ void match_clouds(const SurfaceInput& input, Config& config, std::size_t step,
     const BlockConfig& of = block_of(config.steps[step], blocks[b].name);
     report_fit(blocks[b], of, fit.gate(), hits[b], samples.size(), diagnostics);
     check_camera(blocks[b], of, *problem, samples, values, diagnostics);
+    if (diagnostics.errors.size() == before) {
+      check_coverage(blocks[b], of, *problem, samples, values, diagnostics);
+    }
   }
   if (diagnostics.errors.size() == before) {
     check_joints(fit, input, config.steps[step], assumed.table, heard, start, values, diagnostics);

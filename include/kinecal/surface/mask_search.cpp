@@ -18,11 +18,9 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-using Points = std::vector<Vector3<double>>;
-
 constexpr double kSpread = 25.0;  ///< pixels: of the edges of a mask, in the image of the search
 constexpr std::size_t kTriangles = 300;  ///< of a link there
-constexpr double kFar = 30.0;  ///< pixels there: points farther outside of a mask are alike
+constexpr double kFarOutside = 30.0;  ///< pixels there: points farther outside of a mask are alike
 
 /// A mask in the image of the search.
 struct SearchedMask {
@@ -32,11 +30,11 @@ struct SearchedMask {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   double spread = 0.0;  ///< root of the mean squared distance from the middle, pixels
   int cells = 0;        ///< that are inside
-  Points points;        ///< of the robot, in the frame of the links
+  std::vector<Vector3<double>> points;  ///< of the robot, in the frame of the links
   std::vector<Pose<double>> links;
 };
 
-struct Candidate {
+struct CameraPose {
   Pose<double> camera_T_parent;
   double misfit = 0.0;
 };
@@ -46,14 +44,14 @@ class MaskSearcher {
   MaskSearcher(const RobotSurface& surface, std::span<const PosedMask> samples,
                const MaskSearch& search)
       : search_(search), outliner_(surface, kTriangles) {
-    std::vector<Points> of_links;
+    std::vector<std::vector<Vector3<double>>> of_links;
     for (const SurfaceLink& link : surface.links()) of_links.push_back(few_points(link.tree));
     set_image(samples);
     for (const PosedMask* sample : apart(samples)) add(*sample, of_links);
   }
 
-  [[nodiscard]] std::vector<Candidate> search() const {
-    std::vector<Candidate> all;
+  [[nodiscard]] std::vector<CameraPose> search() const {
+    std::vector<CameraPose> all;
     if (masks_.empty()) return all;
     for (int i = 0; i < search_.rotations; ++i) {
       const Matrix3<double> turn = exp(grid_rotation(i, search_.rotations));
@@ -63,27 +61,27 @@ class MaskSearcher {
         all.push_back({pose, roughly(pose)});
       }
     }
-    const auto is_better = [](const Candidate& a, const Candidate& b) {
+    const auto is_better = [](const CameraPose& a, const CameraPose& b) {
       return a.misfit < b.misfit;
     };
     std::stable_sort(all.begin(), all.end(), is_better);
-    std::vector<Candidate> refined;
-    for (const Candidate& one : all) {
+    std::vector<CameraPose> refined;
+    for (const CameraPose& one : all) {
       if (std::any_of(refined.begin(), refined.end(),
-                      [&](const Candidate& other) { return turn_between(one, other) < 0.2; })) {
+                      [&](const CameraPose& other) { return turn_between(one, other) < 0.2; })) {
         continue;
       }
       refined.push_back(one);
       if (std::ssize(refined) == search_.refined) break;
     }
-    for (Candidate& one : refined) refine(one, kFar, 4);
+    for (CameraPose& one : refined) refine(one, kFarOutside, 4);
     std::stable_sort(refined.begin(), refined.end(), is_better);
     refined.resize(std::min<std::size_t>(refined.size(), 10));
-    for (Candidate& one : refined) refine(one, 0.3 * kFar, 8);
+    for (CameraPose& one : refined) refine(one, 0.3 * kFarOutside, 8);
     std::stable_sort(refined.begin(), refined.end(), is_better);
-    std::vector<Candidate> kept;
-    for (const Candidate& one : refined) {
-      const auto is_same = [&](const Candidate& other) {
+    std::vector<CameraPose> kept;
+    for (const CameraPose& one : refined) {
+      const auto is_same = [&](const CameraPose& other) {
         constexpr double kShift = 0.05, kTurn = 0.1;
         return turn_between(one, other) < kTurn && (one.camera_T_parent.inverse().translation -
                                                     other.camera_T_parent.inverse().translation)
@@ -97,20 +95,20 @@ class MaskSearcher {
   }
 
  private:
-  [[nodiscard]] static double turn_between(const Candidate& a, const Candidate& b) {
+  [[nodiscard]] static double turn_between(const CameraPose& a, const CameraPose& b) {
     return log(Matrix3<double>(a.camera_T_parent.rotation.transpose() * b.camera_T_parent.rotation))
         .norm();
   }
 
   /// Points of a link, evenly by area.
-  [[nodiscard]] static Points few_points(const TriangleTree& tree) {
+  [[nodiscard]] static std::vector<Vector3<double>> few_points(const TriangleTree& tree) {
     constexpr int kPoints = 40;
     std::vector<double> areas;
     for (int t = 0; t < tree.count(); ++t) {
       const auto& [a, b, c] = tree.corners(t);
       areas.push_back((areas.empty() ? 0.0 : areas.back()) + (b - a).cross(c - a).norm());
     }
-    Points points;
+    std::vector<Vector3<double>> points;
     for (int i = 0; i < kPoints; ++i) {
       const double at = (i + 0.5) / kPoints * areas.back();
       const auto t = std::lower_bound(areas.begin(), areas.end(), at) - areas.begin();
@@ -170,7 +168,7 @@ class MaskSearcher {
     return chosen;
   }
 
-  void add(const PosedMask& sample, const std::vector<Points>& of_links) {
+  void add(const PosedMask& sample, const std::vector<std::vector<Vector3<double>>>& of_links) {
     std::vector<MaskEdge> edges;
     std::vector<Eigen::Vector2d> pixels;
     for (const MaskEdge& edge : sample.edges) {
@@ -255,7 +253,7 @@ class MaskSearcher {
           continue;
         }
         covered(u, v) = 1;
-        outside += std::clamp(mask.outside(u, v) / kFar, 0.0, 1.0);
+        outside += std::clamp(mask.outside(u, v) / kFarOutside, 0.0, 1.0);
       }
       int bare = 0;
       for (int v = 0; v < covered.height; ++v) {
@@ -276,7 +274,7 @@ class MaskSearcher {
 
   /// Goes downhill on outlines, both ways, with a narrowing limit; then judges by the mean distance up to a limit.
   /// @param limit  pixels, of the first round
-  void refine(Candidate& one, double limit, int rounds) const {
+  void refine(CameraPose& one, double limit, int rounds) const {
     for (int round = 0; round <= rounds; ++round, limit = std::max(3.0, 0.75 * limit)) {
       Eigen::Matrix<double, 6, 6> hessian = Eigen::Matrix<double, 6, 6>::Zero();
       Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
@@ -389,7 +387,7 @@ std::vector<Pose<double>> find_camera_poses(const RobotSurface& surface,
   const auto has_edges = [](const PosedMask& sample) { return !sample.edges.empty(); };
   if (surface.links().empty() || std::none_of(samples.begin(), samples.end(), has_edges)) return {};
   std::vector<Pose<double>> poses;
-  for (const detail::Candidate& one : detail::MaskSearcher(surface, samples, search).search()) {
+  for (const detail::CameraPose& one : detail::MaskSearcher(surface, samples, search).search()) {
     poses.push_back(one.camera_T_parent.inverse());
   }
   return poses;
