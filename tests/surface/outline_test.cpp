@@ -122,24 +122,6 @@ TEST(Outliner, IsTheSameForMeshesThatAreInsideOutOrOpen) {
   EXPECT_NEAR(static_cast<double>(outline_of(shape)), static_cast<double>(right), 3.0);
 }
 
-TEST(MaskEdges, HaveOutwardNormalsAndNoneAtTheBorder) {
-  GrayImage mask(100, 80, 0);
-  for (int v = 20; v < 80; ++v) {  // reaches the lower border
-    for (int u = 30; u < 60; ++u) mask(u, v) = 255;
-  }
-  const std::vector<MaskEdge> edges = mask_edges(mask);
-  EXPECT_EQ(edges.size(), 30U + 2U * (80U - 20U - kMaskBorder));
-  for (const MaskEdge& edge : edges) {
-    const Eigen::Vector2d inside = edge.pixel - 2.0 * edge.normal,
-                          outside = edge.pixel + 2.0 * edge.normal;
-    const auto at = [&](const Eigen::Vector2d& p) {
-      return mask(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
-    };
-    EXPECT_EQ(at(inside), 255);
-    EXPECT_EQ(at(outside), 0);
-  }
-}
-
 TEST(PixelGrid, FindsTheNearest) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> u(-20.0, 340.0), v(-20.0, 260.0);

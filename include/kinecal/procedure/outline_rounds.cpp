@@ -29,20 +29,46 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-constexpr double kNarrowestGate = 3.0;         ///< pixels, of a gate without a loss
-constexpr double kLossScales = 20.0;           ///< scales of a loss, of the gate with one
-constexpr double kOnOutline = 5.0;             ///< pixels: an edge within belongs to the robot
-constexpr int kFewEdges = 300;                 ///< of a sample, in coarse rounds
+constexpr double kNarrowestGate = 3.0;  ///< pixels, of a gate without a loss
+constexpr double kLossScales = 20.0;    ///< scales of a loss, of the gate with one
+constexpr double kOnOutline = 0.04;     ///< of the size of masks: an edge within is on the outline
+constexpr double kLeastShare = 0.5;     ///< of edges on the outline, and of the outline on edges
+constexpr int kFewEdges = 300;          ///< of a sample, in coarse rounds
 constexpr std::size_t kSimpleTriangles = 600;  ///< of a link, in coarse rounds
 
 [[nodiscard]] ParameterValues values_of_all(const Eigen::VectorXd& values) {
   return {values.data(), static_cast<std::size_t>(values.size())};
 }
 
+/// The size of masks, pixels: median distance of their edges from the middle.
+[[nodiscard]] double size_of_masks(std::span<const Sample> samples, const std::string& camera) {
+  std::vector<double> sizes;
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(camera);
+    if (seen == nullptr || seen->features.empty()) continue;
+    std::vector<double> u, v, away;
+    for (const Feature& edge : seen->features) {
+      if (!edge.point.allFinite()) continue;
+      u.push_back(edge.point.x());
+      v.push_back(edge.point.y());
+    }
+    if (u.empty()) continue;
+    const Eigen::Vector2d middle(median_of(u), median_of(v));
+    for (std::size_t i = 0; i < u.size(); ++i)
+      away.push_back((Eigen::Vector2d(u[i], v[i]) - middle).norm());
+    sizes.push_back(median_of(std::move(away)));
+  }
+  return sizes.empty() ? 100.0 : std::max(10.0, median_of(std::move(sizes)));
+}
+
 /// A block of masks, with what finds its outlines.
 struct OutlineBlock {
   const SurfaceBlock* of = nullptr;
   Outliner fine, simple;
+  double size = 100.0;  ///< of its masks, pixels
+
+  /// An edge within is on the outline, pixels.
+  [[nodiscard]] double near() const { return std::max(1.5, kOnOutline * size); }
 };
 
 /// How edges count in a round.
@@ -66,11 +92,11 @@ struct OutlineState {
 class OutlineRounds {
  public:
   OutlineRounds(const SurfaceInput& input, const Config& config, std::size_t step,
-                std::span<const SurfaceBlock> blocks)
+                std::span<const SurfaceBlock> blocks, std::span<const Sample> samples)
       : input_(input), config_(config), step_(step) {
     for (const SurfaceBlock& block : blocks) {
-      blocks_.push_back(
-          {&block, Outliner(block.surface), Outliner(block.surface, kSimpleTriangles)});
+      blocks_.push_back({&block, Outliner(block.surface), Outliner(block.surface, kSimpleTriangles),
+                         size_of_masks(samples, block.pair.camera)});
     }
   }
 
@@ -276,8 +302,10 @@ class OutlineRounds {
 class OutlineFit {
  public:
   OutlineFit(const SurfaceInput& input, const Config& config, std::size_t step,
-             std::span<const SurfaceBlock> blocks)
-      : config_(config.steps[step]), rounds_(input, config, step, blocks) {}
+             std::span<const SurfaceBlock> blocks, std::span<const Sample> samples)
+      : config_(config.steps[step]), rounds_(input, config, step, blocks, samples) {
+    for (const OutlineBlock& block : rounds_.blocks()) size_ = std::max(size_, block.size);
+  }
 
   [[nodiscard]] const OutlineRounds& rounds() const { return rounds_; }
   /// The gate beyond which nothing counts in the end, pixels.
@@ -292,10 +320,9 @@ class OutlineFit {
     }
     const bool is_lost = std::any_of(unknown.begin(), unknown.end(),
                                      [](const UnknownFrame& frame) { return !frame.has_guess; });
-    constexpr double kGood = 0.5;  // of edges on the robot
     std::optional<OutlineState> best;
     if (!is_lost) best = coarse(few, start, 1.0);
-    if (!best || on_robot(few, *best) < kGood) {
+    if (!best || on_robot(few, *best) < kLeastShare) {
       const std::unique_ptr<AnyProblem> problem = rounds_.problem_for({});
       bool is_found = false;
       for (const OutlineBlock& block : rounds_.blocks()) {
@@ -324,8 +351,9 @@ class OutlineFit {
   [[nodiscard]] OutlineState coarse(std::span<const Sample> few, const Eigen::VectorXd& values,
                                     double part) const {
     OutlineState state{.values = values};
-    for (const double gate : {160.0, 80.0, 40.0, 20.0, 12.0}) {
-      if (gate > part * 160.0) continue;
+    for (const double of_size : {1.4, 0.7, 0.35, 0.17, 0.1}) {
+      const double gate = of_size * size_;
+      if (of_size > 1.4 * part) continue;
       state = rounds_.run({.gate = gate, .huber = 0.2 * gate, .rounds = 6, .is_simple = true}, few,
                           state.values);
     }
@@ -335,12 +363,13 @@ class OutlineFit {
   /// The least share of the edges of a block that are on the robot, and of its outline on the edges.
   [[nodiscard]] double on_robot(std::span<const Sample> few, const OutlineState& state) const {
     double least = 1.0;
-    const auto hits =
-        rounds_.associated(*rounds_.problem_for({}), few, state.values, 2.0 * kOnOutline, true);
+    const auto hits = rounds_.associated(*rounds_.problem_for({}), few, state.values,
+                                         2.0 * kOnOutline * size_, true);
     for (std::size_t b = 0; b < hits.size(); ++b) {
-      const std::string& camera = rounds_.blocks()[b].of->pair.camera;
-      least = std::min({least, share_within(distances_of(hits[b], few, camera, true), kOnOutline),
-                        share_within(distances_of(hits[b], few, camera, false), kOnOutline)});
+      const OutlineBlock& block = rounds_.blocks()[b];
+      const std::string& camera = block.of->pair.camera;
+      least = std::min({least, share_within(distances_of(hits[b], few, camera, true), block.near()),
+                        share_within(distances_of(hits[b], few, camera, false), block.near())});
     }
     return least;
   }
@@ -356,7 +385,7 @@ class OutlineFit {
       gate_ = kLossScales * scale;
       return rounds_.run({.gate = gate_, .rounds = kMost}, samples, values);
     }
-    gate_ = 12.0;
+    gate_ = 0.1 * size_;
     OutlineState state{.values = values};
     for (int round = 0; round < 8; ++round) {
       state = rounds_.run({.gate = gate_, .rounds = 4}, samples, state.values);
@@ -381,11 +410,12 @@ class OutlineFit {
   const StepConfig& config_;
   OutlineRounds rounds_;
   double gate_ = 0.0;
+  double size_ = 0.0;  ///< of the largest masks, pixels
 };
 
 /// Names links whose outline is off in most samples where it is seen.
 [[nodiscard]] std::string links_off(const SurfaceBlock& block, const OutlineHits& hits,
-                                    std::span<const Sample> samples) {
+                                    std::span<const Sample> samples, double within) {
   constexpr std::size_t kFewest = 50;
   constexpr double kOften = 0.6;
   std::vector<std::vector<double>> of_links(block.surface.links().size());
@@ -397,11 +427,11 @@ class OutlineFit {
   }
   std::string text;
   for (std::size_t l = 0; l < of_links.size(); ++l) {
-    if (of_links[l].size() < kFewest || share_within(of_links[l], kOnOutline) > kOften) continue;
+    if (of_links[l].size() < kFewest || share_within(of_links[l], within) > kOften) continue;
     const double median = median_of(of_links[l]);
-    text += fmt::format("{} link '{}' ({:.0f} % of its outline within {:.0f} px, {})",
+    text += fmt::format("{} link '{}' ({:.0f} % of its outline within {:.3g} px, {})",
                         text.empty() ? "; off in most masks:" : ",", block.surface.links()[l].name,
-                        100.0 * share_within(of_links[l], kOnOutline), kOnOutline,
+                        100.0 * share_within(of_links[l], within), within,
                         std::isfinite(median) ? fmt::format("median {:.1f} px", median)
                                               : std::string("most of it has no edge near"));
   }
@@ -409,28 +439,28 @@ class OutlineFit {
 }
 
 /// Says how the masks lie on the robot; an error if they do not.
-void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
+void report_fit(const OutlineBlock& of_masks, const BlockConfig& of, double gate,
                 const OutlineHits& hits, std::span<const Sample> samples,
                 Diagnostics& diagnostics) {
+  const SurfaceBlock& block = *of_masks.of;
+  const double near = of_masks.near();
   const std::vector<double> edges = distances_of(hits, samples, block.pair.camera, true),
                             outline = distances_of(hits, samples, block.pair.camera, false);
   if (edges.empty()) return;  // assemble() says so
-  const double on_edges = share_within(edges, kOnOutline),
-               on_outline = share_within(outline, kOnOutline);
+  const double on_edges = share_within(edges, near), on_outline = share_within(outline, near);
   const std::string masks =
       fmt::format("{} of masks of sensor '{}' in {}", counted(edges.size(), "edge"),
                   block.pair.camera, counted(samples.size(), "sample"));
-  constexpr double kFewest = 0.4;
-  if (on_edges < kFewest || on_outline < kFewest) {
+  if (on_edges < kLeastShare || on_outline < kLeastShare) {
     diagnostics.error(
         of.place,
         fmt::format(
             "error block '{}': the masks do not show the robot.  Of {}, {:.0f} % are within "
-            "{:.0f} px of its outline after the best fit, and {:.0f} % of its outline within "
-            "{:.0f} px of them.  Are these masks of this robot (255: robot), of this camera, "
+            "{:.3g} px of its outline after the best fit, and {:.0f} % of its outline within "
+            "{:.3g} px of them.  Are these masks of this robot (255: robot), of this camera, "
             "with the joints of the same images?  If the camera's pose is far off, leave its "
             "initial values out: then it is searched for",
-            of.name, masks, 100.0 * on_edges, kOnOutline, 100.0 * on_outline, kOnOutline));
+            of.name, masks, 100.0 * on_edges, near, 100.0 * on_outline, near));
     return;
   }
   const LossType type = loss_type(of.loss.type);
@@ -442,15 +472,15 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
     }
   }
   std::string text = fmt::format(
-      "error block '{}': {}: {:.1f} % are within {:.0f} px of the robot's outline, median {:.3f} "
+      "error block '{}': {}: {:.1f} % are within {:.3g} px of the robot's outline, median {:.3f} "
       "px; "
-      "{:.1f} % of the outline within {:.0f} px of an edge, median {:.3f} px; what is within "
+      "{:.1f} % of the outline within {:.3g} px of an edge, median {:.3f} px; what is within "
       "{:.4g} "
       "px counts",
-      of.name, masks, 100.0 * on_edges, kOnOutline, median_of(edges), 100.0 * on_outline,
-      kOnOutline, median_of(outline), gate);
+      of.name, masks, 100.0 * on_edges, near, median_of(edges), 100.0 * on_outline, near,
+      median_of(outline), gate);
   if (type != LossType::none) text += fmt::format(", cost {:.1f}", cost);
-  diagnostics.note(of.place, text + links_off(block, hits, samples));
+  diagnostics.note(of.place, text + links_off(block, hits, samples, near));
 }
 
 /// Gives a block whose loss is in pixels the noise that its edges show, and the same loss in sigmas.
@@ -476,14 +506,14 @@ void match_outlines(const SurfaceInput& input, Config& config, std::size_t step,
                     Eigen::VectorXd& values, std::span<const UnknownFrame> unknown,
                     Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
-  detail::OutlineFit fit(input, config, step, blocks);
+  detail::OutlineFit fit(input, config, step, blocks, samples);
   const std::vector<Sample> heard = heard_samples(samples, input.exclude);
   values = fit.run(heard, values, unknown, diagnostics).values;
   const std::vector<OutlineHits> hits =
       fit.rounds().associated(*fit.rounds().problem_for({}), samples, values, 1e3, false);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    detail::report_fit(blocks[b], block_of(config.steps[step], blocks[b].name), fit.gate(), hits[b],
-                       samples, diagnostics);
+    detail::report_fit(fit.rounds().blocks()[b], block_of(config.steps[step], blocks[b].name),
+                       fit.gate(), hits[b], samples, diagnostics);
   }
   if (diagnostics.errors.size() > before) return;
   samples = fit.rounds().matched(samples, hits, fit.gate());

@@ -1,0 +1,180 @@
+#include "kinecal/procedure/outline_rounds.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/cameras/read_camera_file.hpp"
+#include "kinecal/files/images/read_image.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
+#include "support/data.hpp"
+#include "support/mask_robot.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// The start of the tests: 6 cm and 6 degrees off true_camera().
+constexpr const char* kStart = "x: -1.26, y: -0.63, z: 0.79, roll: -1.62, pitch: 0.03, yaw: -1.24";
+
+Pose<double> camera_in(const ParameterTable& table) {
+  const auto value = [&](const char* axis) {
+    return table["camera_joint_" + std::string(axis)].value;
+  };
+  return {exp(Vector3<double>(value("a"), value("b"), value("c"))),
+          Vector3<double>(value("x"), value("y"), value("z"))};
+}
+
+/// Where rounds have ended.
+ParameterTable begin_of(const PreparedCalibration& of) {
+  ParameterTable table = of.calibration.table;
+  for (int p = 0; p < table.size(); ++p) {
+    table[p].value = of.calibration.begin[static_cast<std::size_t>(p)];
+  }
+  return table;
+}
+
+double distance_of(const Pose<double>& one, const Pose<double>& other) {
+  return (one.translation - other.translation).norm();
+}
+
+double angle_of(const Pose<double>& one, const Pose<double>& other) {
+  return Eigen::AngleAxisd(one.rotation.transpose() * other.rotation).angle();
+}
+
+/// An arm with meshes in a folder, and masks of it.
+class OutlineRoundsOfAnArm : public test::FolderTest {
+ protected:
+  OutlineRoundsOfAnArm() { test::write_meshes(folder_); }
+
+  CalibrationSetup setup(const std::string& initial, test::CloudPlan plan = {},
+                         const std::string& free_params = "") {
+    std::string config = test::mesh_config(initial, "", free_params);
+    const auto replace = [&](const std::string& what, const std::string& with) {
+      config.replace(config.find(what), what.size(), with);
+    };
+    replace("camera3d", "camera2d");
+    replace("chain3d_to_mesh", "camera2d_to_mesh");
+    Diagnostics found;
+    CalibrationSetup setup{.robot = parse_urdf(urdf_, "arm.urdf"),
+                           .config = parse_config(config, "calibrate.yaml", found),
+                           .urdf_text = urdf_,
+                           .urdf = (folder_ / "arm.urdf").string()};
+    EXPECT_THAT(found.errors, IsEmpty());
+    plan.pixels = 2;  // of clouds, which are not used
+    setup.samples = test::mask_robot_samples(setup.robot, plan);
+    return setup;
+  }
+
+  std::string urdf_ = test::mesh_robot_urdf();
+};
+
+TEST_F(OutlineRoundsOfAnArm, FindTheCamera) {
+  const CalibratedRobot calibrated = calibrate_robot(setup(kStart));
+  ASSERT_TRUE(calibrated.is_usable()) << calibrated.judgement.reasons.front();
+  const Pose<double> found = camera_in(calibrated.result.table);
+  EXPECT_LT(distance_of(found, test::true_camera()), 2e-3) << "pixels of 6 mm at the robot";
+  EXPECT_LT(angle_of(found, test::true_camera()), 2e-3);
+}
+
+TEST_F(OutlineRoundsOfAnArm, NeedNoStart) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const PreparedCalibration prepared = prepare(setup("", {.samples = 5, .seed = seed}));
+    ASSERT_THAT(prepared.diagnostics.errors, IsEmpty());
+    EXPECT_THAT(prepared.diagnostics.notes,
+                testing::Contains(HasSubstr("'camera_joint' was searched")));
+    EXPECT_LT(distance_of(camera_in(begin_of(prepared)), test::true_camera()), 5e-3) << seed;
+  }
+}
+
+TEST_F(OutlineRoundsOfAnArm, FindOffsetsOfJoints) {
+  const CalibratedRobot calibrated = calibrate_robot(
+      setup(kStart, {.samples = 12, .offsets = {{"lift", 0.02}, {"elbow", -0.03}}}, "lift, elbow"));
+  ASSERT_TRUE(calibrated.is_usable()) << calibrated.judgement.reasons.front();
+  EXPECT_NEAR(calibrated.result.table["lift"].value, 0.02, 3e-3);
+  EXPECT_NEAR(calibrated.result.table["elbow"].value, -0.03, 4e-3);
+}
+
+TEST_F(OutlineRoundsOfAnArm, ForgiveStrangersAndHoles) {
+  CalibrationSetup masks = setup(kStart);
+  for (Sample& sample :
+       masks.samples) {  // the edges of a box beside the robot, and a part that is missing
+    std::vector<Feature>& edges = sample.observations.at(0).features;
+    std::erase_if(edges, [](const Feature& edge) { return edge.point.y() > 180.0; });
+    for (int i = 0; i < 60; ++i) {
+      Feature& edge = edges.emplace_back(edges.front());
+      edge.point = {20.5, 40.0 + i, 0.0};
+      edge.conditions = {{"nu", 1.0}, {"nv", 0.0}};
+    }
+  }
+  const CalibratedRobot calibrated = calibrate_robot(std::move(masks));
+  ASSERT_TRUE(calibrated.is_usable()) << calibrated.judgement.reasons.front();
+  EXPECT_LT(distance_of(camera_in(calibrated.result.table), test::true_camera()), 3e-3);
+}
+
+TEST_F(OutlineRoundsOfAnArm, RefuseMasksOfOtherJoints) {
+  CalibrationSetup masks = setup(kStart);
+  std::vector<std::vector<double>> positions;
+  for (const Sample& sample : masks.samples) positions.push_back(sample.joint_positions);
+  for (std::size_t s = 0; s < masks.samples.size(); ++s) {
+    masks.samples[s].joint_positions = positions[(s + 3) % positions.size()];
+  }
+  EXPECT_THAT(prepare(masks).diagnostics.errors,
+              testing::ElementsAre(HasSubstr("the masks do not show the robot")));
+}
+
+/// Ten masks of a KUKA Med 7: README of the data set.
+TEST(OutlineOfMed7, ReachesTheReferenceFromNothing) {
+  KINECAL_NEEDS_DATA("med7_masks");
+  const std::filesystem::path folder = test::data_folder() / "med7_masks";
+  Diagnostics found;
+  CalibrationSetup setup;
+  setup.urdf = (test::data_folder() / "med7_mesh/med7.urdf").string();
+  setup.urdf_text = read_urdf_text(setup.urdf);
+  setup.robot = parse_urdf(setup.urdf_text, setup.urdf);
+  setup.config = parse_config(
+      "base_link: lbr_link_0\nmodels:\n- {name: camera, type: camera2d, frame: "
+      "camera_color_optical_frame}\nfree_frames:\n- {name: camera_joint, x: true, y: true, z: "
+      "true, roll: true, pitch: true, yaw: true}\nerror_blocks:\n- {name: outline, type: "
+      "camera2d_to_mesh, model: camera, loss: {type: cauchy, scale: 2.0}}\n",
+      "calibrate.yaml", found);
+  std::ifstream table(folder / "poses.csv");
+  std::string line;
+  std::getline(table, line);
+  while (std::getline(table, line)) {
+    std::istringstream row(line);
+    std::string image, number;
+    std::getline(row, image, ',');
+    View view;
+    view.frame = "camera_color_optical_frame";
+    view.camera = read_camera_file((folder / "camera.yaml").string(), found);
+    view.image = read_image((folder / image).string());
+    Sample& sample = setup.samples.emplace_back();
+    sample.source = image;
+    sample.observations = MaskFinder{}.find(view).observations;
+    for (int joint = 1; std::getline(row, number, ','); ++joint) {
+      sample.joint_names.push_back("lbr_A" + std::to_string(joint));
+      sample.joint_positions.push_back(std::stod(number));
+    }
+  }
+  ASSERT_EQ(setup.samples.size(), 10U);
+  const PreparedCalibration of = prepare(std::move(setup), {}, std::move(found));
+  ASSERT_THAT(of.diagnostics.errors, IsEmpty());
+  const Pose<double> reference{rotation_from_rpy(Vector3<double>(-2.203076, 0.086556, -2.451640)),
+                               Vector3<double>(-0.557137, 0.438020, 0.765785)};
+  EXPECT_LT(distance_of(camera_in(begin_of(of)), reference), 0.5e-3);
+  EXPECT_LT(angle_of(camera_in(begin_of(of)), reference), 1e-3);
+  EXPECT_THAT(of.diagnostics.notes,
+              testing::Contains(HasSubstr("off in most masks: link 'lbr_link_0'")));
+}
+
+}  // namespace
+}  // namespace kinecal
