@@ -19,19 +19,9 @@
 namespace kinecal {
 namespace {
 
+using test::angle_of, test::camera_in, test::distance_of, test::kStart;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-/// The start of the tests: 6 cm and 6 degrees off true_camera().
-constexpr const char* kStart = "x: -1.26, y: -0.63, z: 0.79, roll: -1.62, pitch: 0.03, yaw: -1.24";
-
-Pose<double> camera_in(const ParameterTable& table) {
-  const auto value = [&](const char* axis) {
-    return table["camera_joint_" + std::string(axis)].value;
-  };
-  return {exp(Vector3<double>(value("a"), value("b"), value("c"))),
-          Vector3<double>(value("x"), value("y"), value("z"))};
-}
 
 /// Where rounds have ended.
 ParameterTable begin_of(const PreparedCalibration& of) {
@@ -40,14 +30,6 @@ ParameterTable begin_of(const PreparedCalibration& of) {
     table[p].value = of.calibration.begin[static_cast<std::size_t>(p)];
   }
   return table;
-}
-
-double distance_of(const Pose<double>& one, const Pose<double>& other) {
-  return (one.translation - other.translation).norm();
-}
-
-double angle_of(const Pose<double>& one, const Pose<double>& other) {
-  return Eigen::AngleAxisd(one.rotation.transpose() * other.rotation).angle();
 }
 
 /// An arm with meshes in a folder, and masks of it.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
 #include <fstream>
 #include <map>
 #include <random>
@@ -12,6 +13,7 @@
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
+#include "kinecal/parameters/parameter_table.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/surface/robot_surface.hpp"
 #include "support/shapes.hpp"
@@ -176,6 +178,27 @@ inline std::string mesh_config(const std::string& initial, const std::string& bl
               ? ""
               : "free_frames_initial_values:\n- {name: camera_joint, " + initial + "}\n") +
          "error_blocks:\n- {name: surface, type: chain3d_to_mesh, model: camera" + block + "}\n";
+}
+
+/// The start of the tests: 6 cm and 6 degrees off true_camera().
+inline constexpr const char* kStart =
+    "x: -1.26, y: -0.63, z: 0.79, roll: -1.62, pitch: 0.03, yaw: -1.24";
+
+/// The pose of the camera in a table.
+inline Pose<double> camera_in(const ParameterTable& table) {
+  const auto value = [&](const char* axis) {
+    return table["camera_joint_" + std::string(axis)].value;
+  };
+  return {exp(Vector3<double>(value("a"), value("b"), value("c"))),
+          Vector3<double>(value("x"), value("y"), value("z"))};
+}
+
+inline double distance_of(const Pose<double>& one, const Pose<double>& other) {
+  return (one.translation - other.translation).norm();
+}
+
+inline double angle_of(const Pose<double>& one, const Pose<double>& other) {
+  return Eigen::AngleAxisd(one.rotation.transpose() * other.rotation).angle();
 }
 
 }  // namespace kinecal::test

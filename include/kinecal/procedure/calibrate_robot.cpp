@@ -15,6 +15,7 @@
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/hold_parameters.hpp"
+#include "kinecal/config/registry.hpp"
 #include "kinecal/explain/judge_causes.hpp"
 #include "kinecal/explain/would_help.hpp"
 #include "kinecal/procedure/judge_read_back.hpp"
@@ -48,18 +49,6 @@ namespace {
   });
 }
 
-/// The samples without those that are excluded.
-/// @param exclude  numbers, from 1
-[[nodiscard]] std::vector<Sample> without(const std::vector<Sample>& samples,
-                                          const std::vector<int>& exclude) {
-  const std::set<int> numbers(exclude.begin(), exclude.end());
-  std::vector<Sample> others;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (!numbers.contains(static_cast<int>(i) + 1)) others.push_back(samples[i]);
-  }
-  return others;
-}
-
 /// Assembles the problems, and doubts the input.
 void assemble(PreparedCalibration& prepared, const std::vector<int>& exclude) {
   prepared.calibration =
@@ -69,7 +58,7 @@ void assemble(PreparedCalibration& prepared, const std::vector<int>& exclude) {
                  prepared.calibration, prepared.recorded, prepared.is_part},
                 prepared.diagnostics);
   };
-  exclude.empty() ? doubt(prepared.samples) : doubt(without(prepared.samples, exclude));
+  exclude.empty() ? doubt(prepared.samples) : doubt(heard_samples(prepared.samples, exclude));
 }
 
 /// What a search begins with: the unknown poses are free, and a note says that there is a search.
@@ -292,7 +281,7 @@ void explain(CalibratedRobot& calibrated, const CalibrationOptions& options) {
                                setup.urdf,    calibrated.samples, setup.calibration};
   const int causes = findings.judgement.causes;
   if (frees_some) {
-    judge_causes(input, without(setup.samples, options.exclude), findings, options.suspects);
+    judge_causes(input, heard_samples(setup.samples, options.exclude), findings, options.suspects);
   }
   if (calibrated.robot_search && findings.judgement.causes == causes) {
     const std::string why = another_robot(*calibrated.robot_search);

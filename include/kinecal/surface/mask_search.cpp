@@ -47,7 +47,13 @@ class MaskSearcher {
     std::vector<std::vector<Vector3<double>>> of_links;
     for (const SurfaceLink& link : surface.links()) of_links.push_back(few_points(link.tree));
     set_image(samples);
-    for (const PosedMask* sample : apart(samples)) add(*sample, of_links);
+    std::vector<std::vector<Pose<double>>> poses;
+    for (const PosedMask& sample : samples) {
+      poses.push_back(sample.edges.empty() ? std::vector<Pose<double>>() : sample.links);
+    }
+    for (const std::size_t i : farthest_apart(poses, static_cast<std::size_t>(search.samples))) {
+      add(samples[i], of_links);
+    }
   }
 
   [[nodiscard]] std::vector<CameraPose> search() const {
@@ -143,29 +149,6 @@ class MaskSearcher {
     offset_ = -focal_ * low;
     width_ = std::max(1, static_cast<int>(std::ceil(focal_ * size.x())));
     height_ = std::max(1, static_cast<int>(std::ceil(focal_ * size.y())));
-  }
-
-  /// Samples whose links are farthest apart, in turn.
-  [[nodiscard]] std::vector<const PosedMask*> apart(std::span<const PosedMask> samples) const {
-    std::vector<const PosedMask*> usable, chosen;
-    for (const PosedMask& sample : samples) {
-      if (!sample.edges.empty()) usable.push_back(&sample);
-    }
-    std::vector<double> away(usable.size(), std::numeric_limits<double>::infinity());
-    while (chosen.size() < usable.size() && std::ssize(chosen) < search_.samples) {
-      const auto next = std::max_element(away.begin(), away.end());
-      const PosedMask& taken = *usable[static_cast<std::size_t>(next - away.begin())];
-      chosen.push_back(&taken);
-      for (std::size_t i = 0; i < usable.size(); ++i) {
-        double moves = 0.0;
-        for (std::size_t l = 0; l < taken.links.size(); ++l) {
-          moves += (usable[i]->links[l].translation - taken.links[l].translation).norm() +
-                   (usable[i]->links[l].rotation - taken.links[l].rotation).norm();
-        }
-        away[i] = usable[i] == &taken ? -1.0 : std::min(away[i], moves);
-      }
-    }
-    return chosen;
   }
 
   void add(const PosedMask& sample, const std::vector<std::vector<Vector3<double>>>& of_links) {

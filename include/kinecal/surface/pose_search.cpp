@@ -231,9 +231,13 @@ class PoseSearcher {
       of_links.push_back(surface_points(link.tree, 0.5 * kCell));
     }
     std::vector<Points> robots;
-    std::vector<const PosedCloud*> chosen = apart(samples);
+    std::vector<std::vector<Pose<double>>> poses;
+    for (const PosedCloud& sample : samples) {
+      poses.push_back(sample.points.empty() ? std::vector<Pose<double>>() : sample.links);
+    }
     std::vector<Points> clouds;
-    for (const PosedCloud* sample : chosen) {
+    for (const std::size_t i : farthest_apart(poses, static_cast<std::size_t>(search.samples))) {
+      const PosedCloud* sample = &samples[i];
       Points& robot = robots.emplace_back();
       for (std::size_t l = 0; l < of_links.size(); ++l) {
         for (const Vector3<double>& p : of_links[l]) robot.push_back(sample->links[l] * p);
@@ -291,29 +295,6 @@ class PoseSearcher {
   }
 
  private:
-  /// Samples whose links are farthest apart, in turn.
-  [[nodiscard]] std::vector<const PosedCloud*> apart(std::span<const PosedCloud> samples) const {
-    std::vector<const PosedCloud*> usable, chosen;
-    for (const PosedCloud& sample : samples) {
-      if (!sample.points.empty()) usable.push_back(&sample);
-    }
-    std::vector<double> away(usable.size(), std::numeric_limits<double>::infinity());
-    while (chosen.size() < usable.size() && std::ssize(chosen) < search_.samples) {
-      const auto next = std::max_element(away.begin(), away.end());
-      const PosedCloud& taken = *usable[static_cast<std::size_t>(next - away.begin())];
-      chosen.push_back(&taken);
-      for (std::size_t i = 0; i < usable.size(); ++i) {
-        double moves = 0.0;
-        for (std::size_t l = 0; l < taken.links.size(); ++l) {
-          moves += (usable[i]->links[l].translation - taken.links[l].translation).norm() +
-                   (usable[i]->links[l].rotation - taken.links[l].rotation).norm();
-        }
-        away[i] = usable[i] == &taken ? -1.0 : std::min(away[i], moves);
-      }
-    }
-    return chosen;
-  }
-
   void add_middles(const std::vector<Points>& robots, const std::vector<Points>& clouds) {
     constexpr std::size_t kFewest = 20;  // points, for a middle
     std::vector<std::pair<Vector3<double>, Vector3<double>>> middles;

@@ -232,6 +232,31 @@ SurfaceHit RobotSurface::cast(std::span<const Pose<double>> base_T_links,
   return hit;
 }
 
+std::vector<std::size_t> farthest_apart(std::span<const std::vector<Pose<double>>> links,
+                                        std::size_t most) {
+  constexpr double kTaken = -1.0;
+  std::vector<double> away;
+  for (const auto& pose : links) {
+    away.push_back(pose.empty() ? kTaken : std::numeric_limits<double>::infinity());
+  }
+  std::vector<std::size_t> chosen;
+  while (chosen.size() < most) {
+    const auto next = std::max_element(away.begin(), away.end());
+    if (next == away.end() || *next == kTaken) break;
+    const auto taken = static_cast<std::size_t>(next - away.begin());
+    chosen.push_back(taken);
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      double moves = 0.0;
+      for (std::size_t l = 0; l < links[i].size(); ++l) {
+        moves += (links[i][l].translation - links[taken][l].translation).norm() +
+                 (links[i][l].rotation - links[taken][l].rotation).norm();
+      }
+      away[i] = i == taken ? kTaken : std::min(away[i], moves);
+    }
+  }
+  return chosen;
+}
+
 RobotSurface read_surface(const std::string& text, const SurfaceSource& source,
                           Diagnostics& diagnostics) {
   const auto of = [&](ShapeElement element) {

@@ -72,6 +72,13 @@ class RobotSurface {
   std::vector<SurfaceLink> links_;
 };
 
+/// Of poses of a robot, those that are farthest apart, in turn.
+/// @param links  of each: poses of its links in one frame; empty: it does not count
+/// @param most   number of them that are wanted
+/// @returns  places in `links`
+[[nodiscard]] std::vector<std::size_t> farthest_apart(
+    std::span<const std::vector<Pose<double>>> links, std::size_t most);
+
 /// What of a URDF is read as a surface.
 struct SurfaceSource {
   std::string urdf = {};                                  ///< its name in messages: the file
