@@ -58,7 +58,7 @@ class PosedLinks {
 /// by the triangles that were found before, else by cells of space.
 [[nodiscard]] std::vector<std::size_t> by_place(const std::vector<PlacedFeature>& points,
                                                 const std::vector<SurfaceHit>& before) {
-  constexpr double kCell = 0.03;  // metres
+  constexpr double kPlace = 0.03;  // metres
   std::vector<std::pair<std::uint64_t, std::size_t>> keys;
   keys.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -69,7 +69,7 @@ class PosedLinks {
             static_cast<std::uint64_t>(before[i].triangle);
     } else {
       for (Eigen::Index k = 0; k < 3; ++k) {
-        const double cell = std::clamp(points[i].point[k] / kCell + 1000.0, 0.0, 65535.0);
+        const double cell = std::clamp(points[i].point[k] / kPlace + 1000.0, 0.0, 65535.0);
         key = (key << 16) | static_cast<std::uint64_t>(cell);
       }
       key |= std::uint64_t{1} << 63;

@@ -18,7 +18,7 @@ namespace {
 /// Searches in floats go this much farther, so that rounding hides nothing.
 constexpr float kSlack = 1.00001F;
 /// A child that is not there; its square is still less than infinity.
-constexpr float kNowhere = 1e18F;
+constexpr float kNoBox = 1e18F;
 
 template <class L>
 [[nodiscard]] L lower_of(L a, L b) {
@@ -181,9 +181,9 @@ class TriangleTree::Build {
       for (std::size_t k = 0; k < 3; ++k) {
         // Rounded outward.
         made.low[k][c] =
-            from == to ? detail::kNowhere : std::nextafter(static_cast<float>(box.low[k]), -1e30F);
+            from == to ? detail::kNoBox : std::nextafter(static_cast<float>(box.low[k]), -1e30F);
         made.high[k][c] =
-            from == to ? detail::kNowhere : std::nextafter(static_cast<float>(box.high[k]), 1e30F);
+            from == to ? detail::kNoBox : std::nextafter(static_cast<float>(box.high[k]), 1e30F);
       }
       int child = 0;
       if (to > from) child = to - from <= kWide ? ~leaf(from, to) : node(from, to, level + 1);
@@ -417,7 +417,7 @@ std::optional<SurfacePoint> TriangleTree::cast(const Vector3<double>& origin,
       const std::size_t below = open.count();
       for (int c = 0; c < kWide; ++c) {
         constexpr float kGrown = 1e-5F;  // of rounding in floats
-        const bool is_there = node.low[0][c] < detail::kNowhere;
+        const bool is_there = node.low[0][c] < detail::kNoBox;
         if (!is_there || !(enter[c] <= leave[c] * (1.0F + kGrown) + kGrown) || enter[c] > least)
           continue;
         open.add(enter[c] * (1.0F - kGrown) - kGrown, node.child[static_cast<std::size_t>(c)],
