@@ -110,9 +110,10 @@ TEST_F(Init, ReportsAWrongAnswerAndTheNearestName) {
   EXPECT_EQ(target.code, 1);
   EXPECT_THAT(target.err,
               AllOf(HasSubstr("--target: 'trackr'"), HasSubstr("did you mean 'tracker'?")));
-  EXPECT_THAT(init("fetch", "--target '?'").err,
-              HasSubstr("'?' is not a target; choose one of leds, checkerboard, apriltag, charuco, "
-                        "world_checkerboard, world_apriltag, world_charuco, tracker, ground"));
+  EXPECT_THAT(
+      init("fetch", "--target '?'").err,
+      HasSubstr("'?' is not a target; choose one of leds, checkerboard, apriltag, charuco, "
+                "world_checkerboard, world_apriltag, world_charuco, tracker, ground, robot"));
   EXPECT_EQ(init("fetch", "--target leds,tracker").code, 1);
   EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
 }

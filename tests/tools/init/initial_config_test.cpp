@@ -15,6 +15,7 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
+#include "kinecal/tools/init/initial_capture.hpp"
 #include "kinecal/trust/uncertainty/observability.hpp"
 #include "support/every_robot.hpp"
 #include "support/paths.hpp"
@@ -54,6 +55,7 @@ std::vector<Case> every_case(const Robot& robot) {
         if (!cameras.empty()) answers.camera = cameras.front();
         answers.base = propose_base(robot, answers.arm);
         const bool pixels = answers.camera_type == "camera2d";
+        if (word.target == InitTarget::robot) continue;  // has a test of its own
         if (word.target == InitTarget::tracker && (ground || pixels)) continue;
         if (word.target == InitTarget::ground && (ground || pixels)) continue;
         if (pixels && ground) continue;
@@ -335,6 +337,28 @@ TEST(InitialConfigNames, AreQuotedWhereYamlWouldMistakeThem) {
   EXPECT_EQ(yaml["base_link"].as<std::string>(), "base: link");
   EXPECT_EQ(yaml["free_params"][0].as<std::string>(), "a, b");
   EXPECT_EQ(yaml["models"][0]["frame"].as<std::string>(), "off");
+}
+
+TEST(InitialConfigOfTheRobotItself, FreesTheCameraOnly) {
+  const Robot robot = read_urdf(test::source_folder() + "/examples/robots/fetch/fetch.urdf");
+  for (const auto& [type, block] :
+       {std::pair("camera3d", "chain3d_to_mesh"), std::pair("camera2d", "camera2d_to_mesh")}) {
+    InitAnswers answers{.target = InitTarget::robot};
+    answers.camera = propose_cameras(robot).front();
+    answers.camera_type = type;
+    Diagnostics diagnostics;
+    const Config config =
+        parse_config(initial_config(robot, answers), "calibrate.yaml", diagnostics);
+    EXPECT_THAT(diagnostics.errors, testing::IsEmpty());
+    EXPECT_THAT(diagnostics.warnings, testing::IsEmpty());
+    const StepConfig& step = config.steps.front();
+    EXPECT_TRUE(step.free_params.empty());
+    ASSERT_EQ(step.free_frames.size(), 1U);
+    ASSERT_EQ(step.error_blocks.size(), 1U);
+    EXPECT_EQ(step.error_blocks[0].type, block);
+    EXPECT_EQ(step.error_blocks[0].loss.type, "cauchy");
+    EXPECT_TRUE(initial_capture(robot, answers).empty());
+  }
 }
 
 }  // namespace

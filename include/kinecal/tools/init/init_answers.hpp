@@ -12,7 +12,7 @@
 namespace kinecal {
 
 /// The kinds of targets that a robot is measured against: where they are, and what sees them.
-enum class InitTarget { leds, checkerboard, world_checkerboard, tracker, ground };
+enum class InitTarget { leds, checkerboard, world_checkerboard, tracker, ground, robot };
 
 /// The boards of `checkerboard` and `world_checkerboard`.
 enum class InitBoard { checkerboard, apriltag, charuco };
@@ -26,7 +26,7 @@ struct InitTargetWord {
 };
 
 /// All targets, in the order of questions.
-inline constexpr std::array<InitTargetWord, 9> kInitTargets = {{
+inline constexpr std::array<InitTargetWord, 10> kInitTargets = {{
     {InitTarget::leds, InitBoard::checkerboard, "leds",
      "LEDs (or other points at known places) on the gripper, seen by a camera"},
     {InitTarget::checkerboard, InitBoard::checkerboard, "checkerboard",
@@ -43,6 +43,8 @@ inline constexpr std::array<InitTargetWord, 9> kInitTargets = {{
     {InitTarget::tracker, InitBoard::checkerboard, "tracker",
      "a reflector on the arm, followed by a laser tracker"},
     {InitTarget::ground, InitBoard::checkerboard, "ground", "the floor, seen by a depth camera"},
+    {InitTarget::robot, InitBoard::checkerboard, "robot",
+     "the robot itself: its meshes, in clouds of a depth camera or in masks"},
 }};
 
 /// The name of a target on the command line.
@@ -88,7 +90,7 @@ inline constexpr std::array<InitTargetWord, 9> kInitTargets = {{
 
 /// True if points are recorded in a frame of the target, which is not in the URDF.
 [[nodiscard]] constexpr bool needs_target_frame(InitTarget target) {
-  return target != InitTarget::leds && target != InitTarget::ground;
+  return target != InitTarget::leds && target != InitTarget::ground && target != InitTarget::robot;
 }
 
 /// The user's answers.  Links are links of the URDF; fields that a target does not need stay empty.

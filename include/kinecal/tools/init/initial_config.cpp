@@ -401,13 +401,48 @@ void add_mounted_camera(InitPlan& plan, const InitAnswers& answers, const std::s
   return plan;
 }
 
+/// The robot's own surface: where a camera stands that sees it.
+[[nodiscard]] InitPlan plan_robot(const Robot& robot, const InitAnswers& answers) {
+  InitPlan plan;
+  const bool depth = answers.camera_type == "camera3d";
+  add_camera_model(plan, answers);
+  const std::string mount = require_mount(robot, answers, {answers.base}).name;
+  for (const Joint& joint : robot.joints()) {
+    if (!moves(joint.type) || joint.mimic) continue;
+    plan.left_out.push_back({joint.name,
+                             "Errors of meshes and depth look like one of its zero; free it if "
+                             "'kinecal calibrate' then finds samples that had no say nearer"});
+  }
+  free_frame(plan, mount,
+             "How the camera is mounted.  Where the URDF has zeros, kinecal searches for it.");
+  InitEntry block{"", "surface", {}};
+  if (depth) {
+    block.why =
+        "The points of the camera lie on the meshes of the URDF; those of the background are left "
+        "out.  The loss is in metres.  'links: [...]' names the links if not all are seen.";
+    block.fields = {{"type", "chain3d_to_mesh"}, {"model", name_to_yaml(answers.camera_name)}};
+    block.fields.emplace_back("loss", "{type: cauchy, scale: 0.005}");
+  } else {
+    block.name = "outline";
+    block.why =
+        "The edges of masks ('kinecal detect --masks') lie on the outline of the meshes of the "
+        "URDF.  The loss is in pixels.  'links: [...]' names the links if some are always covered.";
+    block.fields = {{"type", "camera2d_to_mesh"}, {"model", name_to_yaml(answers.camera_name)}};
+    block.fields.emplace_back("loss", "{type: cauchy, scale: 2.0}");
+  }
+  plan.error_blocks.push_back(std::move(block));
+  return plan;
+}
+
 /// Plans what to free and compare.
 /// @throws InputError  if a link cannot be reached, or the target determines nothing of this robot
 [[nodiscard]] InitPlan plan_initial_config(const Robot& robot, const InitAnswers& answers) {
   try {
     InitPlan plan;
     if (answers.target == InitTarget::tracker) return plan_tracker(robot, answers);
-    if (answers.target == InitTarget::ground) {
+    if (answers.target == InitTarget::robot) {
+      plan = plan_robot(robot, answers);
+    } else if (answers.target == InitTarget::ground) {
       plan = plan_ground(robot, answers);
     } else if (answers.target == InitTarget::world_checkerboard) {
       plan = plan_world_checkerboard(robot, answers);
