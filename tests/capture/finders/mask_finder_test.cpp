@@ -19,7 +19,7 @@ GrayImage example_mask() {
   return mask;
 }
 
-View view_of(GrayImage mask) {
+View view_with(GrayImage mask) {
   View view;
   view.frame = "eye";
   view.image = std::move(mask);
@@ -41,7 +41,7 @@ TEST(MaskEdges, HaveOutwardNormalsAndNoneAtTheBorder) {
 }
 
 TEST(MaskFinder, FindsEdgesWithTheirNormals) {
-  const Found found = MaskFinder{"left"}.find(view_of(example_mask()));
+  const Found found = MaskFinder{"left"}.find(view_with(example_mask()));
   ASSERT_EQ(found.observations.size(), 1U);
   EXPECT_EQ(found.observations[0].sensor, "left");
   ASSERT_EQ(found.observations[0].features.size(), mask_edges(example_mask()).size());
@@ -55,16 +55,16 @@ TEST(MaskFinder, FindsEdgesWithTheirNormals) {
 TEST(MaskFinder, RefusesWhatIsNoMask) {
   const auto refusal = [](View view) { return MaskFinder{}.find(view).refusal; };
   EXPECT_EQ(refusal(View{}), "the view has no image");
-  EXPECT_THAT(refusal(view_of(GrayImage(100, 80, 0))), HasSubstr("the mask has 0 edges"));
+  EXPECT_THAT(refusal(view_with(GrayImage(100, 80, 0))), HasSubstr("the mask has 0 edges"));
   GrayImage inverted = example_mask();
   for (std::uint8_t& pixel : inverted.pixels) pixel = static_cast<std::uint8_t>(255 - pixel);
-  EXPECT_THAT(refusal(view_of(inverted)), HasSubstr("is it inverted?"));
+  EXPECT_THAT(refusal(view_with(inverted)), HasSubstr("is it inverted?"));
   GrayImage photograph(100, 80, 0);
   for (std::size_t i = 0; i < photograph.pixels.size(); ++i) {
     photograph.pixels[i] = static_cast<std::uint8_t>(i * 37 % 256);
   }
-  EXPECT_THAT(refusal(view_of(photograph)), HasSubstr("this is no mask"));
-  View other = view_of(example_mask());
+  EXPECT_THAT(refusal(view_with(photograph)), HasSubstr("this is no mask"));
+  View other = view_with(example_mask());
   other.camera.emplace();
   other.camera->width = 200;
   other.camera->height = 80;
