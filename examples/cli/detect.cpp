@@ -38,7 +38,9 @@ namespace {
 /// @throws InputError  if options do not go together
 void check_options(const DetectOptions& options) {
   if (options.images.empty() && options.bags.empty()) {
-    throw InputError("give photographs (--images and --frame), masks or recordings (--bag)");
+    throw InputError(
+        "give photographs (--images and --frame), masks (--masks and --frame) or recordings "
+        "(--bag)");
   }
   if (options.config.empty() == options.masks.empty()) {
     throw InputError(options.masks.empty()

@@ -170,7 +170,8 @@ TEST_F(DetectRecording, WhatIsMissingIsNamed) {
               HasSubstr("error: capture.yaml:2: finder 'board': eyes.mcap has images on "
                         "topics 'left/image', 'right/image'; name one"));
   EXPECT_THAT(kinecal("detect capture.yaml -o samples.yaml").err,
-              HasSubstr("give photographs (--images and --frame) or recordings (--bag)"));
+              HasSubstr("give photographs (--images and --frame), masks (--masks and --frame) or "
+                        "recordings (--bag)"));
   EXPECT_THAT(kinecal("detect capture.yaml --bag eyes.mcap --board-link a -o samples.yaml").err,
               HasSubstr("--urdf"));
 }

@@ -155,7 +155,8 @@ Outliner::Outliner(const RobotSurface& surface, std::size_t triangles) {
   for (const SurfaceLink& of : surface.links()) {
     Link& link = links_.emplace_back();
     detail::TriangleList list = detail::triangles_of(of.tree, 0.0);
-    for (double cell = 0.02 * of.tree.radius(); list.triangles.size() > triangles; cell *= 1.4) {
+    for (double cell = std::max(1e-6, 0.02 * of.tree.radius()); list.triangles.size() > triangles;
+         cell *= 1.4) {
       list = detail::triangles_of(of.tree, cell);
     }
     link.vertices = std::move(list.vertices);
