@@ -47,6 +47,7 @@ struct SurfaceHit {
 class RobotSurface {
  public:
   RobotSurface() = default;
+  /// @param links  each with its tree
   explicit RobotSurface(std::vector<SurfaceLink> links) : links_(std::move(links)) {}
 
   /// The links, in the order in which they were given.
