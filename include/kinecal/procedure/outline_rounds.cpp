@@ -17,12 +17,12 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/loss_names.hpp"
 #include "kinecal/errors/point_to_outline.hpp"
-#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/surface/mask_search.hpp"
 #include "kinecal/surface/outline_match.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/trust/plain_equations.hpp"
 
 namespace kinecal {
 
@@ -84,7 +84,8 @@ struct OutlineState {
   Eigen::VectorXd values;
   std::vector<OutlineHits> hits = {};  ///< by block
   std::vector<int> free = {};          ///< table indices of the columns of the sums
-  NormalEquations sums = NormalEquations(0);
+  Eigen::VectorXd gradient = {};       ///< (free) of the cost
+  Eigen::MatrixXd hessian = {};        ///< (free x free)
   double cost = std::numeric_limits<double>::infinity();  ///< with what is beyond the gate
 };
 
@@ -181,9 +182,11 @@ class OutlineRounds {
     if (state.free.empty()) return state;
     const FreeSet free(state.free, problem->table().size());
     state.free = free.parameters();
-    state.sums = normal_equations(*problem, values_of_all(state.values), &free, Losses::as_given,
-                                  input_.threads);
-    state.cost = state.sums.cost + cost_beyond(*problem, manner.gate, state.hits);
+    const PlainEquations sums =
+        plain_equations(*problem, free, values_of_all(state.values), input_.threads);
+    state.gradient = sums.gradient.matrix();
+    state.hessian = sums.hessian.matrix();
+    state.cost = sums.cost + cost_beyond(*problem, manner.gate, state.hits);
     if (!std::isfinite(state.cost)) state.cost = std::numeric_limits<double>::infinity();
     return state;
   }
@@ -209,14 +212,14 @@ class OutlineRounds {
   [[nodiscard]] static Eigen::VectorXd stepped(const AnyProblem& problem, const OutlineState& state,
                                                double damping) {
     Eigen::VectorXd values = state.values;
-    const Eigen::Index n = state.sums.gradient.size();
+    const Eigen::Index n = state.gradient.size();
     if (n == 0 || state.free.empty()) return values;
-    Eigen::MatrixXd hessian = state.sums.hessian;
+    Eigen::MatrixXd hessian = state.hessian;
     const double mean = hessian.trace() / static_cast<double>(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       hessian(i, i) += damping * hessian(i, i) + 1e-9 * mean + 1e-30;
     }
-    const Eigen::VectorXd step = hessian.ldlt().solve(-state.sums.gradient);
+    const Eigen::VectorXd step = hessian.ldlt().solve(-state.gradient);
     for (Eigen::Index i = 0; i < n; ++i) {
       const int p = state.free[static_cast<std::size_t>(i)];
       const Parameter& parameter = problem.table()[p];

@@ -19,7 +19,6 @@
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/loss_names.hpp"
-#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/files/urdf/visuals.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/geometry/rotation.hpp"
@@ -28,6 +27,7 @@
 #include "kinecal/surface/surface_match.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/nearest_name.hpp"
+#include "kinecal/trust/plain_equations.hpp"
 #include "kinecal/trust/uncertainty/feature_places.hpp"
 
 namespace kinecal {
@@ -57,7 +57,8 @@ struct RoundState {
   Eigen::VectorXd values;
   std::vector<SurfaceHits> hits = {};  ///< by block
   std::vector<int> free = {};          ///< table indices of the columns of the sums
-  NormalEquations sums = NormalEquations(0);
+  Eigen::VectorXd gradient = {};       ///< (free) of the cost
+  Eigen::MatrixXd hessian = {};        ///< (free x free)
   double cost = std::numeric_limits<double>::infinity();  ///< with those beyond the gate
 };
 
@@ -169,9 +170,11 @@ class SurfaceRounds {
     }
     const FreeSet free = free_of(*problem, manner.held);
     if (free.size() == 0) return state;
-    state.sums =
-        normal_equations(*problem, span_of(state.values), &free, Losses::as_given, input_.threads);
-    state.cost = state.sums.cost + cost_beyond(*problem, manner, state.hits);
+    const PlainEquations sums =
+        plain_equations(*problem, free, span_of(state.values), input_.threads);
+    state.gradient = sums.gradient.matrix();
+    state.hessian = sums.hessian.matrix();
+    state.cost = sums.cost + cost_beyond(*problem, manner, state.hits);
     if (!std::isfinite(state.cost)) state.cost = std::numeric_limits<double>::infinity();
     state.free = free.parameters();
     return state;
@@ -234,16 +237,16 @@ class SurfaceRounds {
                                                            const RoundState& state,
                                                            double damping) const {
     Eigen::VectorXd values = state.values;
-    const Eigen::Index n = state.sums.gradient.size();
+    const Eigen::Index n = state.gradient.size();
     if (n == 0) return {values, 0.0};
-    Eigen::MatrixXd hessian = state.sums.hessian;
+    Eigen::MatrixXd hessian = state.hessian;
     const double mean = hessian.trace() / static_cast<double>(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       hessian(i, i) += damping * hessian(i, i) + 1e-9 * mean + 1e-30;
     }
-    const Eigen::VectorXd step = hessian.ldlt().solve(-state.sums.gradient);
+    const Eigen::VectorXd step = hessian.ldlt().solve(-state.gradient);
     for (Eigen::Index i = 0; i < n; ++i) values[state.free[static_cast<std::size_t>(i)]] += step[i];
-    return {inside_bounds(problem, std::move(values)), -0.5 * step.dot(state.sums.gradient)};
+    return {inside_bounds(problem, std::move(values)), -0.5 * step.dot(state.gradient)};
   }
 
   const SurfaceInput& input_;

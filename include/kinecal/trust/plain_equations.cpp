@@ -7,9 +7,9 @@
 namespace kinecal {
 
 PlainEquations plain_equations(const AnyProblem& problem, const FreeSet& free,
-                               ParameterValues values) {
-  const NormalEquations normal = problem.evaluator(free, 1)->normal_equations(values);
-  return {PlainMatrix(normal.gradient), PlainMatrix(normal.hessian)};
+                               ParameterValues values, int threads) {
+  const NormalEquations normal = problem.evaluator(free, threads)->normal_equations(values);
+  return {normal.cost, PlainMatrix(normal.gradient), PlainMatrix(normal.hessian)};
 }
 
 }  // namespace kinecal

@@ -9,14 +9,16 @@
 
 namespace kinecal {
 
-/// Gradient and Gauss-Newton Hessian of a problem, priors included.
+/// Cost, gradient and Gauss-Newton Hessian of a problem, priors included.
 struct PlainEquations {
+  double cost = 0.0;
   PlainMatrix gradient;  ///< (free)
   PlainMatrix hessian;   ///< (free x free)
 };
 
-/// @param values  of all parameters of the table
+/// @param values   of all parameters of the table
+/// @param threads  number of threads; zero: one per core
 [[nodiscard]] PlainEquations plain_equations(const AnyProblem& problem, const FreeSet& free,
-                                             ParameterValues values);
+                                             ParameterValues values, int threads = 1);
 
 }  // namespace kinecal
