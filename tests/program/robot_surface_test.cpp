@@ -1,0 +1,59 @@
+// The robot as its own target, from files to files: clouds and masks.  With the program as installed, sums cross the border
+// to the library of an instruction set here.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "kinecal/files/samples/write_samples.hpp"
+#include "support/mask_robot.hpp"
+#include "support/run_program.hpp"
+
+namespace kinecal {
+namespace {
+
+using test::Outcome;
+using testing::HasSubstr;
+
+class RobotSurfaceProgram : public test::ProgramTest {
+ protected:
+  RobotSurfaceProgram() {
+    test::write_meshes(folder_);
+    std::ofstream(folder_ / "arm.urdf") << test::mesh_robot_urdf();
+  }
+  /// Calibrates samples; the pose of the camera is unknown.
+  Outcome calibrate(const std::vector<Sample>& samples, const std::string& config) {
+    std::ofstream file(folder_ / "samples.yaml");
+    write_samples(file, samples);
+    file.close();
+    std::ofstream(folder_ / "calibrate.yaml") << config;
+    return kinecal(
+        "calibrate --urdf arm.urdf --config calibrate.yaml --samples samples.yaml --output out");
+  }
+
+  Robot robot_ = parse_urdf(test::mesh_robot_urdf(), "arm.urdf");
+};
+
+TEST_F(RobotSurfaceProgram, CalibratesByClouds) {
+  const Outcome result = calibrate(test::mesh_robot_samples(robot_, {.samples = 5, .noise = 0.001}),
+                                   test::mesh_config(""));
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("'camera_joint' was searched"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/calibrated.urdf"));
+}
+
+TEST_F(RobotSurfaceProgram, CalibratesByMasks) {
+  std::string config = test::mesh_config("");
+  for (const auto& [what, with] : {std::pair<std::string, std::string>("camera3d", "camera2d"),
+                                   {"chain3d_to_mesh", "camera2d_to_mesh"}}) {
+    config.replace(config.find(what), what.size(), with);
+  }
+  const Outcome result =
+      calibrate(test::mask_robot_samples(robot_, {.samples = 6, .pixels = 2}), config);
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("'camera_joint' was searched"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/calibrated.urdf"));
+}
+
+}  // namespace
+}  // namespace kinecal
