@@ -407,12 +407,9 @@ void add_mounted_camera(InitPlan& plan, const InitAnswers& answers, const std::s
   const bool depth = answers.camera_type == "camera3d";
   add_camera_model(plan, answers);
   const std::string mount = require_mount(robot, answers, {answers.base}).name;
-  for (const Joint& joint : robot.joints()) {
-    if (!moves(joint.type) || joint.mimic) continue;
-    plan.left_out.push_back({joint.name,
-                             "Errors of meshes and depth look like one of its zero; free it if "
-                             "'kinecal calibrate' then finds samples that had no say nearer"});
-  }
+  plan.left_out.push_back({"all joints",
+                           "Errors of meshes and depth look like errors of their zeros; free those "
+                           "with which 'kinecal calibrate' finds samples that had no say nearer"});
   free_frame(plan, mount,
              "How the camera is mounted.  Where the URDF has zeros, kinecal searches for it.");
   InitEntry block{"", "surface", {}};
