@@ -8,6 +8,7 @@
 #include "kinecal/procedure/calibrated_files.hpp"
 #include "kinecal/procedure/crate_config.hpp"
 #include "kinecal/procedure/judge_read_back.hpp"
+#include "kinecal/procedure/matched_step.hpp"
 #include "kinecal/procedure/outline_rounds.hpp"
 #include "kinecal/procedure/session_end.hpp"
 #include "kinecal/procedure/session_follower.hpp"

@@ -96,11 +96,11 @@ struct LossConfig {
   double scale = 1.0;         ///< units of the block's residual after division by sigma
 };
 
-/// The surface of the robot with which chain3d_to_mesh compares points.
+/// The surface of the robot with which chain3d_to_mesh compares points, camera2d_to_mesh masks.
 struct SurfaceConfig {
   std::vector<std::string> links = {};  ///< `link_name`, `links`; empty: all that have a mesh
   std::string geometry = {};            ///< visual or collision; empty: visual, if it has meshes
-  int points = 5000;  ///< of a sample, at most; drawn evenly from all sides of all links
+  int points = 5000;                    ///< of a cloud, at most; evenly from its list
 };
 
 /// `error_blocks:`  a comparison, or a prior.
@@ -117,7 +117,7 @@ struct BlockConfig {
   std::optional<double> sigma =
       {};           ///< standard deviation, units of the residual; empty: not given
   LossConfig loss;  ///< of each feature
-  std::optional<SurfaceConfig> surface = {};  ///< of chain3d_to_mesh
+  std::optional<SurfaceConfig> surface = {};  ///< of blocks of the surface of the robot
   SourceLocation place;                       ///< where the file defines it
   /// Its type, where a program brings its own; nullptr: the one that the registry has by this name.
   std::shared_ptr<const BlockEntry> own = nullptr;

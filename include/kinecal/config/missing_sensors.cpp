@@ -60,7 +60,7 @@ std::string sentence_of(const MissingSensors& missing) {
     if (!model->is_surface) names.push_back(model->name);
   }
   if (names.empty()) {
-    return "chain3d_to_mesh: the points are not associated with the surface of the robot; 'kinecal "
+    return "what the camera observes is not associated with the surface of the robot; 'kinecal "
            "calibrate', 'check' and 'identify' do that, with the meshes of the URDF";
   }
   std::string text = fmt::format(

@@ -112,7 +112,13 @@ void read_block_weighting(ConfigMap& map, BlockConfig& block) {
   return nullptr;
 }
 
-/// The surface of chain3d_to_mesh: `link_name`, `links` or `link_names`; `geometry`, `points`.
+/// The sensor of a block that stands for the surface of the robot; the end if it has none.
+[[nodiscard]] auto of_surface(const BlockEntry& entry) {
+  return std::find_if(entry.sensors.begin(), entry.sensors.end(),
+                      [](const BlockSensorEntry& sensor) { return sensor.keys.empty(); });
+}
+
+/// The surface that a block compares with: `link_name`, `links` or `link_names`; `geometry`, `points`.
 [[nodiscard]] SurfaceConfig read_surface_of(ConfigMap& map, const BlockConfig& block) {
   SurfaceConfig surface;
   const char* given = nullptr;
@@ -164,8 +170,9 @@ void add_surface_models(ConfigMap& map, const std::string& base, StepConfig& ste
     surface.param_name = surface.name;
     surface.links = block.surface->links;
     surface.is_surface = true;
-    block.models.insert(
-        block.type == PointToMesh::kType ? block.models.end() : block.models.begin(), surface.name);
+    const BlockEntry& entry = *entry_of(block);
+    block.models.insert(block.models.begin() + (of_surface(entry) - entry.sensors.begin()),
+                        surface.name);
     step.models.push_back(std::move(surface));
   }
 }
@@ -190,9 +197,7 @@ void add_surface_models(ConfigMap& map, const std::string& base, StepConfig& ste
     }
     map.error(item.place, "compares model '" + block.models[i] + "' with itself");
   }
-  if (block.type == PointToMesh::kType || block.type == PointToOutline::kType) {
-    block.surface = read_surface_of(map, block);
-  }
+  if (of_surface(*entry) != entry->sensors.end()) block.surface = read_surface_of(map, block);
   if (entry->has_param) block.param = map.required_text("param").value_or("");
   read_block_numbers(map, *entry, block);
   read_block_weighting(map, block);

@@ -19,10 +19,6 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-[[nodiscard]] ParameterValues span_of(const Eigen::VectorXd& values) {
-  return {values.data(), static_cast<std::size_t>(values.size())};
-}
-
 /// Distances of the error blocks, without priors.
 [[nodiscard]] std::vector<BlockError> errors_of(const std::vector<BlockStatistics>& blocks) {
   std::vector<BlockError> errors;
@@ -85,7 +81,7 @@ struct Zeros {
     const auto rising = unread.find(owner);
     if (name == owner && rising != unread.end()) values(p) -= rising->second;
   }
-  return errors_of(problem, span_of(values));
+  return errors_of(problem, values);
 }
 
 /// Names of parameters of joints that are neither zeros nor frames, and not zero.
@@ -163,7 +159,7 @@ void set_fits(const CalibratedRobot& calibrated, const Robot& robot, const AnyPr
   const PreparedCalibration& setup = calibrated.setup;
   const AnyProblem& problem = *setup.calibration.steps.back().problem;
   const Eigen::VectorXd values = calibrated.result.table.values();
-  found.fits.push_back({Reader::driver, errors_of(problem, span_of(values))});
+  found.fits.push_back({Reader::driver, errors_of(problem, values)});
   std::map<std::string, double> added;  // to the positions of samples
   if (setup.recorded == Recorded::before) added = rising_of(setup.urdf_text, setup.urdf);
   const Zeros zeros = zeros_of(calibrated, options);

@@ -4,25 +4,20 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "kinecal/config/assemble.hpp"
 #include "kinecal/config/loss_names.hpp"
-#include "kinecal/errors/point_to_outline.hpp"
 #include "kinecal/geometry/median.hpp"
-#include "kinecal/geometry/rotation.hpp"
+#include "kinecal/procedure/matched_step.hpp"
 #include "kinecal/surface/mask_search.hpp"
 #include "kinecal/surface/outline_match.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/trust/plain_equations.hpp"
 
 namespace kinecal {
 
@@ -30,15 +25,10 @@ namespace detail {
 namespace {
 
 constexpr double kNarrowestGate = 3.0;  ///< pixels, of a gate without a loss
-constexpr double kLossScales = 20.0;    ///< scales of a loss, of the gate with one
 constexpr double kOnOutline = 0.04;     ///< of the size of masks: an edge within is on the outline
 constexpr double kLeastShare = 0.5;     ///< of edges on the outline, and of the outline on edges
 constexpr int kFewEdges = 300;          ///< of a sample, in coarse rounds
 constexpr std::size_t kSimpleTriangles = 600;  ///< of a link, in coarse rounds
-
-[[nodiscard]] ParameterValues values_of_all(const Eigen::VectorXd& values) {
-  return {values.data(), static_cast<std::size_t>(values.size())};
-}
 
 /// The size of masks, pixels: median distance of their edges from the middle.
 [[nodiscard]] double size_of_masks(std::span<const Sample> samples, const std::string& camera) {
@@ -79,22 +69,17 @@ struct OutlineManner {
   bool is_simple = false;            ///< with simple meshes
 };
 
-/// A state of the rounds: what fits the values.
-struct OutlineState {
-  Eigen::VectorXd values;
+/// A state of the rounds.
+struct OutlineState : MatchedSums {
   std::vector<OutlineHits> hits = {};  ///< by block
-  std::vector<int> free = {};          ///< table indices of the columns of the sums
-  Eigen::VectorXd gradient = {};       ///< (free) of the cost
-  Eigen::MatrixXd hessian = {};        ///< (free x free)
-  double cost = std::numeric_limits<double>::infinity();  ///< with what is beyond the gate
 };
 
 /// The rounds of one step.
 class OutlineRounds {
  public:
-  OutlineRounds(const SurfaceInput& input, const Config& config, std::size_t step,
-                std::span<const SurfaceBlock> blocks, std::span<const Sample> samples)
-      : input_(input), config_(config), step_(step) {
+  OutlineRounds(const MatchedStep& step, std::span<const SurfaceBlock> blocks,
+                std::span<const Sample> samples)
+      : step_(step), of_step_(blocks) {
     for (const SurfaceBlock& block : blocks) {
       blocks_.push_back({&block, Outliner(block.surface), Outliner(block.surface, kSimpleTriangles),
                          size_of_masks(samples, block.pair.camera)});
@@ -107,49 +92,25 @@ class OutlineRounds {
   [[nodiscard]] OutlineState run(const OutlineManner& manner, std::span<const Sample> samples,
                                  const Eigen::VectorXd& values) const {
     constexpr double kSettled = 1e-7;  // of the cost
-    constexpr int kKinks = 3;          // the cost has some, where the nearest point changes
-    const std::unique_ptr<AnyProblem> problem = problem_for(manner.huber);
-    OutlineState state = evaluated(*problem, manner, samples, values);
-    double damping = 1e-3;
-    int rejected = 0;
-    for (int round = 0; round < manner.rounds && rejected < kKinks; ++round) {
-      OutlineState next = evaluated(*problem, manner, samples, stepped(*problem, state, damping));
-      const double fall = state.cost - next.cost;
-      damping = fall > 0.0 ? std::max(1e-9, 0.1 * damping) : 30.0 * damping;
-      rejected = fall > 0.0 ? 0 : rejected + 1;
-      if (!(fall > 0.0)) continue;
-      const bool is_settled = fall <= kSettled * state.cost;
-      state = std::move(next);
-      if (is_settled) break;
-    }
-    return state;
-  }
-
-  /// The problem of the step without samples.
-  /// @param huber  pixels, of a loss in place of the configured ones
-  [[nodiscard]] std::unique_ptr<AnyProblem> problem_for(const std::optional<double>& huber) const {
-    Config config = config_;
-    for (BlockConfig& block : config.steps[step_].error_blocks) {
-      if (huber && block.type == PointToOutline::kType) {
-        block.loss = {"huber", *huber / block.sigma.value_or(1.0)};
-      }
-    }
-    Diagnostics quiet;
-    Calibration calibration = kinecal::assemble(config, input_.robot, {}, quiet);
-    quiet.throw_if_errors();
-    return std::move(calibration.steps.at(step_).problem);
+    const std::unique_ptr<AnyProblem> problem = step_.problem(of_step_, manner.huber);
+    const auto match = [&](Eigen::VectorXd at, const OutlineState&) {
+      return evaluated(*problem, manner, samples, std::move(at));
+    };
+    OutlineState start = evaluated(*problem, manner, samples, values);
+    return go_downhill(problem->table(), std::move(start), manner.rounds, kSettled, match);
   }
 
   /// What belongs together in all samples.
+  /// @param problem  of the step
   [[nodiscard]] std::vector<OutlineHits> associated(const AnyProblem& problem,
                                                     std::span<const Sample> samples,
                                                     const Eigen::VectorXd& values, double bound,
                                                     bool is_simple) const {
     std::vector<OutlineHits> hits;
     for (const OutlineBlock& block : blocks_) {
-      hits.push_back(kinecal::match_outlines(
-          is_simple ? block.simple : block.fine, block.of->surface, block.of->pair, problem,
-          values_of_all(values), samples, bound, input_.threads));
+      hits.push_back(kinecal::match_outlines(is_simple ? block.simple : block.fine,
+                                             block.of->surface, block.of->pair, problem, values,
+                                             samples, bound, step_.input().threads));
     }
     return hits;
   }
@@ -168,84 +129,40 @@ class OutlineRounds {
   [[nodiscard]] OutlineState evaluated(const AnyProblem& empty, const OutlineManner& manner,
                                        std::span<const Sample> samples,
                                        Eigen::VectorXd values) const {
-    OutlineState state{.values = std::move(values)};
-    state.hits = associated(empty, samples, state.values, manner.gate, manner.is_simple);
-    const std::unique_ptr<AnyProblem> problem = empty.without_samples();
-    for (const Sample& sample : matched(samples, state.hits, manner.gate)) {
-      problem->add_sample(sample);
-    }
-    const std::vector<int> touched = problem->touched_parameters();
-    for (const FreeParamConfig& parameter : free_parameters(config_.steps[step_])) {
-      const int index = problem->table().find(parameter.name);
-      if (std::binary_search(touched.begin(), touched.end(), index)) state.free.push_back(index);
-    }
-    if (state.free.empty()) return state;
-    const FreeSet free(state.free, problem->table().size());
-    state.free = free.parameters();
-    const PlainEquations sums =
-        plain_equations(*problem, free, values_of_all(state.values), input_.threads);
-    state.gradient = sums.gradient.matrix();
-    state.hessian = sums.hessian.matrix();
-    state.cost = sums.cost + cost_beyond(*problem, manner.gate, state.hits);
-    if (!std::isfinite(state.cost)) state.cost = std::numeric_limits<double>::infinity();
-    return state;
-  }
-
-  /// What edges and points of the outline cost that have nothing within the gate.
-  [[nodiscard]] double cost_beyond(const AnyProblem& problem, double gate,
-                                   const std::vector<OutlineHits>& hits) const {
-    double cost = 0.0;
+    std::vector<OutlineHits> hits =
+        associated(empty, samples, values, manner.gate, manner.is_simple);
+    std::vector<BeyondGate> beyond;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      for (int t = 0; t < problem.num_terms(); ++t) {
-        const Term& term = problem.term(t);
-        if (term.name != blocks_[b].of->name) continue;
-        const double most = term.options.loss(std::pow(term.weight * gate, 2)).rho;
-        for (const auto& of_sample : hits[b]) {
-          for (const OutlineHit& hit : of_sample) cost += hit.edge < 0 ? 0.5 * most : 0.0;
-        }
+      BeyondGate& of_block = beyond.emplace_back(BeyondGate{blocks_[b].of->name, 0, manner.gate});
+      for (const OutlineMatch& of_sample : hits[b]) {
+        of_sample.for_each([&](const OutlineHit& hit) { of_block.count += hit.edge < 0 ? 1 : 0; });
       }
     }
-    return cost;
+    const std::vector<Sample> with_points = matched(samples, hits, manner.gate);
+    return {step_.sums(empty, with_points, std::move(values), beyond), std::move(hits)};
   }
 
-  /// Values after a damped step, inside of bounds.
-  [[nodiscard]] static Eigen::VectorXd stepped(const AnyProblem& problem, const OutlineState& state,
-                                               double damping) {
-    Eigen::VectorXd values = state.values;
-    const Eigen::Index n = state.gradient.size();
-    if (n == 0 || state.free.empty()) return values;
-    Eigen::MatrixXd hessian = state.hessian;
-    const double mean = hessian.trace() / static_cast<double>(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      hessian(i, i) += damping * hessian(i, i) + 1e-9 * mean + 1e-30;
-    }
-    const Eigen::VectorXd step = hessian.ldlt().solve(-state.gradient);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const int p = state.free[static_cast<std::size_t>(i)];
-      const Parameter& parameter = problem.table()[p];
-      values[p] = std::clamp(values[p] + step[i], parameter.lower, parameter.upper);
-    }
-    return values;
-  }
-
-  const SurfaceInput& input_;
-  const Config& config_;
-  std::size_t step_;
+  const MatchedStep& step_;
+  std::span<const SurfaceBlock> of_step_;
   std::vector<OutlineBlock> blocks_;
 };
 
-/// Distances of the edges of masks, or of the points of outlines; infinite where nothing is near.
-/// @param of_edges  of edges
+/// Distances in all samples; infinite where nothing is near.
+/// @param which  of the edges of masks, or of the points of outlines
 [[nodiscard]] std::vector<double> distances_of(const OutlineHits& hits,
-                                               std::span<const Sample> samples,
-                                               const std::string& camera, bool of_edges) {
+                                               std::vector<OutlineHit> OutlineMatch::*which) {
   std::vector<double> distances;
-  for (std::size_t s = 0; s < hits.size(); ++s) {
-    const Observation* seen = samples[s].observation(camera);
-    const std::size_t edges = seen == nullptr ? 0 : seen->features.size();
-    for (std::size_t i = 0; i < hits[s].size(); ++i) {
-      if ((i < edges) == of_edges) distances.push_back(hits[s][i].distance);
-    }
+  for (const OutlineMatch& of_sample : hits) {
+    for (const OutlineHit& hit : of_sample.*which) distances.push_back(hit.distance);
+  }
+  return distances;
+}
+
+/// The same of both.
+[[nodiscard]] std::vector<double> distances_of(const OutlineHits& hits) {
+  std::vector<double> distances;
+  for (const OutlineMatch& of_sample : hits) {
+    of_sample.for_each([&](const OutlineHit& hit) { distances.push_back(hit.distance); });
   }
   return distances;
 }
@@ -269,7 +186,7 @@ class OutlineRounds {
   const MountedSensor& camera = in_chain.camera();
   const SampledChain& chain = camera.chains().front();
   const Eigen::VectorXd zero = in_chain.zeroed(start);
-  const std::vector<double> own = camera.own_values(values_of_all(zero));
+  const std::vector<double> own = camera.own_values(zero);
   std::vector<PosedMask> masks;
   std::optional<Pose<double>> frame_T_camera;
   for (const Sample& sample : samples) {
@@ -281,7 +198,7 @@ class OutlineRounds {
       return Eigen::Vector2d(ray.x() / ray.z(), ray.y() / ray.z());
     };
     frame_T_camera = in_chain.before(sample, zero).inverse() *
-                     chain.tip(sample, corrections_for(chain.parameters(), values_of_all(zero)));
+                     chain.tip(sample, corrections_for(chain.parameters(), ParameterValues(zero)));
     PosedMask& mask = masks.emplace_back();
     mask.low = ideal(0.0, 0.0);
     mask.high = ideal(seen->camera->width - 1.0, seen->camera->height - 1.0);
@@ -304,9 +221,9 @@ class OutlineRounds {
 /// The whole of the rounds.
 class OutlineFit {
  public:
-  OutlineFit(const SurfaceInput& input, const Config& config, std::size_t step,
-             std::span<const SurfaceBlock> blocks, std::span<const Sample> samples)
-      : config_(config.steps[step]), rounds_(input, config, step, blocks, samples) {
+  OutlineFit(const MatchedStep& step, std::span<const SurfaceBlock> blocks,
+             std::span<const Sample> samples)
+      : step_(step), of_step_(blocks), rounds_(step, blocks, samples) {
     for (const OutlineBlock& block : rounds_.blocks()) size_ = std::max(size_, block.size);
   }
 
@@ -326,7 +243,7 @@ class OutlineFit {
     std::optional<OutlineState> best;
     if (!is_lost) best = coarse(few, start, 1.0);
     if (!best || on_robot(few, *best) < kLeastShare) {
-      const std::unique_ptr<AnyProblem> problem = rounds_.problem_for({});
+      const std::unique_ptr<AnyProblem> problem = step_.problem();
       bool is_found = false;
       for (const OutlineBlock& block : rounds_.blocks()) {
         for (const UnknownFrame& frame : unknown) {
@@ -353,7 +270,7 @@ class OutlineFit {
   /// @param part  of the widest gate
   [[nodiscard]] OutlineState coarse(std::span<const Sample> few, const Eigen::VectorXd& values,
                                     double part) const {
-    OutlineState state{.values = values};
+    OutlineState state{{.values = values}, {}};
     for (const double of_size : {1.4, 0.7, 0.35, 0.17, 0.1}) {
       const double gate = of_size * size_;
       if (of_size > 1.4 * part) continue;
@@ -366,51 +283,42 @@ class OutlineFit {
   /// The least share of the edges of a block that are on the robot, and of its outline on the edges.
   [[nodiscard]] double on_robot(std::span<const Sample> few, const OutlineState& state) const {
     double least = 1.0;
-    const auto hits = rounds_.associated(*rounds_.problem_for({}), few, state.values,
-                                         2.0 * kOnOutline * size_, true);
+    const auto hits =
+        rounds_.associated(*step_.problem(), few, state.values, 2.0 * kOnOutline * size_, true);
     for (std::size_t b = 0; b < hits.size(); ++b) {
-      const OutlineBlock& block = rounds_.blocks()[b];
-      const std::string& camera = block.of->pair.camera;
-      least = std::min({least, share_within(distances_of(hits[b], few, camera, true), block.near()),
-                        share_within(distances_of(hits[b], few, camera, false), block.near())});
+      const double near = rounds_.blocks()[b].near();
+      for (const auto which : {&OutlineMatch::edges, &OutlineMatch::outline}) {
+        least = std::min(least, share_within(distances_of(hits[b], which), near));
+      }
     }
     return least;
   }
 
   [[nodiscard]] OutlineState fine(std::span<const Sample> samples, const Eigen::VectorXd& values) {
     constexpr int kMost = 30;
-    double scale = 0.0;  // pixels, the widest of the losses
-    for (const BlockConfig& block : config_.error_blocks) {
-      if (block.type != PointToOutline::kType || block.loss.type == "none") continue;
-      scale = std::max(scale, block.loss.scale * block.sigma.value_or(1.0));
-    }
-    if (scale > 0.0) {
-      gate_ = kLossScales * scale;
-      return rounds_.run({.gate = gate_, .rounds = kMost}, samples, values);
-    }
-    gate_ = 0.1 * size_;
-    OutlineState state{.values = values};
-    for (int round = 0; round < 8; ++round) {
-      state = rounds_.run({.gate = gate_, .rounds = 4}, samples, state.values);
-      std::vector<double> near;
-      for (const OutlineHits& of_block : state.hits) {
-        for (const auto& of_sample : of_block) {
-          for (const OutlineHit& hit : of_sample) {
-            if (hit.distance <= gate_) near.push_back(hit.distance);
-          }
-        }
-      }
-      if (near.empty()) break;
-      constexpr double kRobust = 4.0 * 1.4826;
-      const double next = std::clamp(kRobust * median_of(std::move(near)), kNarrowestGate, gate_);
-      const bool is_settled = next > 0.99 * gate_;
-      gate_ = next;
-      if (is_settled) break;
+    OutlineState state{{.values = values}, {}};
+    const std::optional<double> of_losses = step_.gate_of_losses(of_step_);
+    gate_ = of_losses.value_or(0.1 * size_);
+    if (!of_losses) {
+      narrow(
+          gate_, kNarrowestGate, state,
+          [&](double gate, const Eigen::VectorXd& from) {
+            return rounds_.run({.gate = gate, .rounds = 4}, samples, from);
+          },
+          [](const OutlineState& at) {
+            std::vector<double> distances;
+            for (const OutlineHits& of_block : at.hits) {
+              const std::vector<double> more = distances_of(of_block);
+              distances.insert(distances.end(), more.begin(), more.end());
+            }
+            return distances;
+          });
     }
     return rounds_.run({.gate = gate_, .rounds = kMost}, samples, state.values);
   }
 
-  const StepConfig& config_;
+  const MatchedStep& step_;
+  std::span<const SurfaceBlock> of_step_;
   OutlineRounds rounds_;
   double gate_ = 0.0;
   double size_ = 0.0;  ///< of the largest masks, pixels
@@ -418,14 +326,13 @@ class OutlineFit {
 
 /// Names links whose outline is off in most samples where it is seen.
 [[nodiscard]] std::string links_off(const SurfaceBlock& block, const OutlineHits& hits,
-                                    std::span<const Sample> samples, double within) {
+                                    double within) {
   constexpr std::size_t kFewest = 50;
   constexpr double kOften = 0.6;
   std::vector<std::vector<double>> of_links(block.surface.links().size());
-  for (std::size_t s = 0; s < hits.size(); ++s) {
-    const Observation* seen = samples[s].observation(block.pair.camera);
-    for (std::size_t i = seen == nullptr ? 0 : seen->features.size(); i < hits[s].size(); ++i) {
-      of_links[static_cast<std::size_t>(hits[s][i].on.link)].push_back(hits[s][i].distance);
+  for (const OutlineMatch& of_sample : hits) {
+    for (const OutlineHit& hit : of_sample.outline) {
+      of_links[static_cast<std::size_t>(hit.on.link)].push_back(hit.distance);
     }
   }
   std::string text;
@@ -443,17 +350,16 @@ class OutlineFit {
 
 /// Says how the masks lie on the robot; an error if they do not.
 void report_fit(const OutlineBlock& of_masks, const BlockConfig& of, double gate,
-                const OutlineHits& hits, std::span<const Sample> samples,
-                Diagnostics& diagnostics) {
+                const OutlineHits& hits, Diagnostics& diagnostics) {
   const SurfaceBlock& block = *of_masks.of;
   const double near = of_masks.near();
-  const std::vector<double> edges = distances_of(hits, samples, block.pair.camera, true),
-                            outline = distances_of(hits, samples, block.pair.camera, false);
+  const std::vector<double> edges = distances_of(hits, &OutlineMatch::edges),
+                            outline = distances_of(hits, &OutlineMatch::outline);
   if (edges.empty()) return;  // assemble() says so
   const double on_edges = share_within(edges, near), on_outline = share_within(outline, near);
   const std::string masks =
       fmt::format("{} of masks of sensor '{}' in {}", counted(edges.size(), "edge"),
-                  block.pair.camera, counted(samples.size(), "sample"));
+                  block.pair.camera, counted(hits.size(), "sample"));
   if (on_edges < kLeastShare || on_outline < kLeastShare) {
     diagnostics.error(
         of.place,
@@ -483,48 +389,34 @@ void report_fit(const OutlineBlock& of_masks, const BlockConfig& of, double gate
       of.name, masks, 100.0 * on_edges, near, median_of(edges), 100.0 * on_outline, near,
       median_of(outline), gate);
   if (type != LossType::none) text += fmt::format(", cost {:.1f}", cost);
-  diagnostics.note(of.place, text + links_off(block, hits, samples, near));
-}
-
-/// Gives a block whose loss is in pixels the noise that its edges show, and the same loss in sigmas.
-void keep_loss(const OutlineHits& hits, double gate, BlockConfig& block) {
-  if (block.loss.type == "none" || block.sigma) return;
-  std::vector<double> near;
-  for (const auto& of_sample : hits) {
-    for (const OutlineHit& hit : of_sample) {
-      if (hit.distance <= gate) near.push_back(hit.distance);
-    }
-  }
-  if (near.empty()) return;
-  constexpr double kOfMedian = 1.4826;
-  block.sigma = std::max(1e-3, kOfMedian * median_of(std::move(near)));
-  block.loss.scale /= *block.sigma;
+  diagnostics.note(of.place, text + links_off(block, hits, near));
 }
 
 }  // namespace
 }  // namespace detail
 
-void match_outlines(const SurfaceInput& input, Config& config, std::size_t step,
+void match_outlines(const SurfaceInput& input, Config& config, std::size_t number,
                     std::span<const SurfaceBlock> blocks, std::vector<Sample>& samples,
                     Eigen::VectorXd& values, std::span<const UnknownFrame> unknown,
                     Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
-  detail::OutlineFit fit(input, config, step, blocks, samples);
+  StepConfig& of_step = config.steps[number];
+  const MatchedStep step(input, config, number);
+  detail::OutlineFit fit(step, blocks, samples);
   const std::vector<Sample> heard = heard_samples(samples, input.exclude);
   values = fit.run(heard, values, unknown, diagnostics).values;
+  constexpr double kFar = 1e3;  // pixels
   const std::vector<OutlineHits> hits =
-      fit.rounds().associated(*fit.rounds().problem_for({}), samples, values, 1e3, false);
+      fit.rounds().associated(*step.problem(), samples, values, kFar, false);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    detail::report_fit(fit.rounds().blocks()[b], block_of(config.steps[step], blocks[b].name),
-                       fit.gate(), hits[b], samples, diagnostics);
+    detail::report_fit(fit.rounds().blocks()[b], block_of(of_step, blocks[b].name), fit.gate(),
+                       hits[b], diagnostics);
   }
   if (diagnostics.errors.size() > before) return;
   samples = fit.rounds().matched(samples, hits, fit.gate());
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const auto block =
-        std::find_if(config.steps[step].error_blocks.begin(), config.steps[step].error_blocks.end(),
-                     [&](const BlockConfig& one) { return one.name == blocks[b].name; });
-    detail::keep_loss(hits[b], fit.gate(), *block);
+    constexpr double kLeast = 1e-3;  // pixels
+    keep_loss(block_of(of_step, blocks[b].name), detail::distances_of(hits[b]), fit.gate(), kLeast);
   }
 }
 

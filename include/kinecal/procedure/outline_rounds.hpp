@@ -19,14 +19,14 @@
 namespace kinecal {
 
 /// Associates the masks of all samples with the outline of the robot.
-/// @param step     number of the step
+/// @param number   of the step
 /// @param blocks   its blocks of masks
 /// @param config   such a block gets the noise that its edges show, if it has a loss
 /// @param samples  get the outline; edges that are not of the robot are left out
 /// @param values   in: where rounds begin, of all parameters of the assembled table; out: where they ended
 /// @param unknown  frames whose pose may be searched for
 /// @param diagnostics  errors: masks that do not show the robot; notes: the fit, links that are always off
-void match_outlines(const SurfaceInput& input, Config& config, std::size_t step,
+void match_outlines(const SurfaceInput& input, Config& config, std::size_t number,
                     std::span<const SurfaceBlock> blocks, std::vector<Sample>& samples,
                     Eigen::VectorXd& values, std::span<const UnknownFrame> unknown,
                     Diagnostics& diagnostics);

@@ -20,6 +20,12 @@ namespace kinecal {
 namespace detail {
 namespace {
 
+template <class Step>
+[[nodiscard]] auto& find_block(Step& step, const std::string& name) {
+  return *std::find_if(step.error_blocks.begin(), step.error_blocks.end(),
+                       [&](const BlockConfig& block) { return block.name == name; });
+}
+
 /// Reads the surfaces that the blocks of a configuration need, and names their links in it.
 class SurfaceResolver {
  public:
@@ -141,8 +147,11 @@ std::vector<std::vector<SurfaceBlock>> read_surface_blocks(const SurfaceInput& i
 }
 
 const BlockConfig& block_of(const StepConfig& step, const std::string& name) {
-  return *std::find_if(step.error_blocks.begin(), step.error_blocks.end(),
-                       [&](const BlockConfig& block) { return block.name == name; });
+  return detail::find_block(step, name);
+}
+
+BlockConfig& block_of(StepConfig& step, const std::string& name) {
+  return detail::find_block(step, name);
 }
 
 std::vector<Sample> heard_samples(std::span<const Sample> samples,
@@ -194,15 +203,13 @@ Eigen::VectorXd SearchedFrame::with(const Pose<double>& pose, Eigen::VectorXd va
 }
 
 Pose<double> SearchedFrame::before(const Sample& sample, const Eigen::VectorXd& values) const {
-  const ParameterValues at(values.data(), static_cast<std::size_t>(values.size()));
-  return before_->tip(sample, corrections_for(before_->parameters(), at));
+  return before_->tip(sample, corrections_for(before_->parameters(), ParameterValues(values)));
 }
 
 std::vector<Pose<double>> SearchedFrame::links(const SurfaceBlock& block, const Sample& sample,
                                                const Eigen::VectorXd& values) const {
-  const ParameterValues at(values.data(), static_cast<std::size_t>(values.size()));
   const Pose<double> frame_T_base = before(sample, values).inverse();
-  std::vector<Pose<double>> links = link_poses(block.surface, block.pair, problem_, at, sample);
+  std::vector<Pose<double>> links = link_poses(block.surface, block.pair, problem_, values, sample);
   for (Pose<double>& link : links) link = frame_T_base * link;
   return links;
 }

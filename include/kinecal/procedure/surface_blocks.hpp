@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,10 @@ struct SurfaceBlock {
                                                                          Diagnostics& diagnostics);
 
 /// The error block of this name, which is in the step.
+/// @{
 [[nodiscard]] const BlockConfig& block_of(const StepConfig& step, const std::string& name);
+[[nodiscard]] BlockConfig& block_of(StepConfig& step, const std::string& name);
+/// @}
 
 /// The samples without those that are excluded.
 /// @param exclude  numbers, from 1

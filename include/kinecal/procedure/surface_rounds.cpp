@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -22,12 +21,12 @@
 #include "kinecal/files/urdf/visuals.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/geometry/rotation.hpp"
+#include "kinecal/procedure/matched_step.hpp"
 #include "kinecal/procedure/outline_rounds.hpp"
 #include "kinecal/surface/pose_search.hpp"
 #include "kinecal/surface/surface_match.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/nearest_name.hpp"
-#include "kinecal/trust/plain_equations.hpp"
 #include "kinecal/trust/uncertainty/feature_places.hpp"
 
 namespace kinecal {
@@ -37,7 +36,6 @@ namespace {
 
 constexpr double kWidest = 0.3;      ///< metres, of the first gate
 constexpr double kNarrowest = 0.01;  ///< metres, of a gate without a loss
-constexpr double kScales = 20.0;     ///< scales of a loss, of the gate with one
 constexpr double kOnRobot = 0.02;    ///< metres: a point within lies on the robot
 constexpr int kFewPoints = 400;      ///< of a sample, in coarse rounds
 constexpr int kFewestPoints = 120;   ///< of a sample, where ends of rounds are compared
@@ -52,84 +50,29 @@ struct RoundManner {
   std::set<int> held = {};  ///< table indices of parameters that keep their values
 };
 
-/// A state of the rounds: what fits the values.
-struct RoundState {
-  Eigen::VectorXd values;
+/// A state of the rounds.
+struct RoundState : MatchedSums {
   std::vector<SurfaceHits> hits = {};  ///< by block
-  std::vector<int> free = {};          ///< table indices of the columns of the sums
-  Eigen::VectorXd gradient = {};       ///< (free) of the cost
-  Eigen::MatrixXd hessian = {};        ///< (free x free)
-  double cost = std::numeric_limits<double>::infinity();  ///< with those beyond the gate
 };
 
 /// The rounds of one step.
 class SurfaceRounds {
  public:
-  /// @param samples  of the camera, without the surface
-  SurfaceRounds(const SurfaceInput& input, const Config& config, std::size_t step,
-                const std::vector<SurfaceBlock>& blocks)
-      : input_(input), config_(config), step_(step), blocks_(blocks) {}
+  SurfaceRounds(const MatchedStep& step, std::span<const SurfaceBlock> blocks)
+      : step_(step), blocks_(blocks) {}
 
   /// Goes downhill from values; returns the state in which it ended.
-  /// @param hits  by block: those of the same samples for values that are near, or empty
+  /// @param samples  of the camera, without the surface
+  /// @param hits     by block: those of the same samples for values that are near, or empty
   [[nodiscard]] RoundState run(const RoundManner& manner, std::span<const Sample> samples,
                                const Eigen::VectorXd& values,
                                std::vector<SurfaceHits> hits = {}) const {
-    const std::unique_ptr<AnyProblem> problem = problem_for(manner);
-    RoundState state = evaluated(*problem, manner, samples, values, std::move(hits));
-    double damping = 1e-3;
-    int rejected = 0;
-    Eigen::VectorXd last;  // step
-    for (int round = 0; round < manner.rounds; ++round) {
-      auto [values_after, promised] = stepped(*problem, state, damping);
-      if (!(promised > manner.tolerance * state.cost)) break;
-      Eigen::VectorXd step = values_after - state.values;
-      if (last.size() > 0 && rejected == 0) {
-        // Steps of robust losses are too short by a constant factor: Aitken's extrapolation.
-        constexpr double kMost = 0.7;
-        const double rate = std::clamp(step.dot(last) / last.squaredNorm(), 0.0, kMost);
-        values_after = inside_bounds(*problem, state.values + step / (1.0 - rate));
-      }
-      last = std::move(step);
-      RoundState next = evaluated(*problem, manner, samples, values_after, state.hits);
-      const double fall = state.cost - next.cost;
-      const bool is_better = fall > 0.0;
-      damping = is_better ? std::max(1e-9, 0.1 * damping) : 30.0 * damping;
-      rejected = is_better ? 0 : rejected + 1;
-      constexpr int kKinks = 3;  // the cost has some, where the nearest triangle changes
-      if (is_better) state = std::move(next);
-      if (rejected == kKinks || (is_better && fall <= manner.tolerance * state.cost)) break;
-    }
-    return state;
-  }
-
-  /// The problem of the step without samples, with the losses of a round.
-  [[nodiscard]] std::unique_ptr<AnyProblem> problem_for(const RoundManner& manner) const {
-    Config config = config_;
-    if (manner.huber) {
-      for (BlockConfig& block : config.steps[step_].error_blocks) {
-        const double weight = block.numbers.contains("scale") ? block.numbers.at("scale") : 1.0;
-        if (block.surface) {
-          block.loss = {"huber", *manner.huber * weight / block.sigma.value_or(1.0)};
-        }
-      }
-    }
-    Diagnostics quiet;
-    Calibration calibration = kinecal::assemble(config, input_.robot, {}, quiet);
-    quiet.throw_if_errors();
-    return std::move(calibration.steps.at(step_).problem);
-  }
-
-  /// The free parameters of the step that samples affect.
-  [[nodiscard]] FreeSet free_of(const AnyProblem& problem, const std::set<int>& held) const {
-    const std::vector<int> touched = problem.touched_parameters();
-    std::vector<int> free;
-    for (const FreeParamConfig& parameter : free_parameters(config_.steps[step_])) {
-      const int index = problem.table().find(parameter.name);
-      const bool is_touched = std::binary_search(touched.begin(), touched.end(), index);
-      if (is_touched && !held.contains(index)) free.push_back(index);
-    }
-    return FreeSet(std::move(free), problem.table().size());
+    const std::unique_ptr<AnyProblem> problem = step_.problem(blocks_, manner.huber);
+    const auto match = [&](Eigen::VectorXd at, const RoundState& before) {
+      return evaluated(*problem, manner, samples, std::move(at), before.hits);
+    };
+    RoundState start = evaluated(*problem, manner, samples, values, std::move(hits));
+    return go_downhill(problem->table(), std::move(start), manner.rounds, manner.tolerance, match);
   }
 
   [[nodiscard]] std::vector<Sample> matched(std::span<const Sample> samples,
@@ -143,68 +86,44 @@ class SurfaceRounds {
   }
 
   /// The nearest points of all samples.
-  void associate(const AnyProblem& problem, std::span<const Sample> samples,
-                 const Eigen::VectorXd& values, double bound,
-                 std::vector<SurfaceHits>& hits) const {
-    hits.resize(blocks_.size());
+  /// @param problem  of the step
+  [[nodiscard]] std::vector<SurfaceHits> associated(const AnyProblem& problem,
+                                                    std::span<const Sample> samples,
+                                                    const Eigen::VectorXd& values, double bound,
+                                                    std::vector<SurfaceHits> before = {}) const {
+    before.resize(blocks_.size());
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      kinecal::associate(blocks_[b].surface, blocks_[b].pair, problem, span_of(values), samples,
-                         bound, input_.threads, hits[b]);
+      associate(blocks_[b].surface, blocks_[b].pair, problem, values, samples, bound,
+                step_.input().threads, before[b]);
     }
-  }
-
-  [[nodiscard]] static ParameterValues span_of(const Eigen::VectorXd& values) {
-    return {values.data(), static_cast<std::size_t>(values.size())};
+    return before;
   }
 
  private:
   [[nodiscard]] RoundState evaluated(const AnyProblem& empty, const RoundManner& manner,
                                      std::span<const Sample> samples, Eigen::VectorXd values,
-                                     std::vector<SurfaceHits> hits) const {
-    RoundState state{.values = std::move(values), .hits = std::move(hits)};
-    associate(empty, samples, state.values, manner.gate, state.hits);
-    if (manner.only_front) drop_backs(empty, samples, state);
-    const std::unique_ptr<AnyProblem> problem = empty.without_samples();
-    for (const Sample& sample : matched(samples, state.hits, manner.gate)) {
-      problem->add_sample(sample);
-    }
-    const FreeSet free = free_of(*problem, manner.held);
-    if (free.size() == 0) return state;
-    const PlainEquations sums =
-        plain_equations(*problem, free, span_of(state.values), input_.threads);
-    state.gradient = sums.gradient.matrix();
-    state.hessian = sums.hessian.matrix();
-    state.cost = sums.cost + cost_beyond(*problem, manner, state.hits);
-    if (!std::isfinite(state.cost)) state.cost = std::numeric_limits<double>::infinity();
-    state.free = free.parameters();
-    return state;
-  }
-
-  /// What points beyond the gate cost.
-  [[nodiscard]] double cost_beyond(const AnyProblem& problem, const RoundManner& manner,
-                                   const std::vector<SurfaceHits>& hits) const {
-    double cost = 0.0;
+                                     std::vector<SurfaceHits> before) const {
+    std::vector<SurfaceHits> hits =
+        associated(empty, samples, values, manner.gate, std::move(before));
+    if (manner.only_front) drop_backs(empty, samples, values, hits);
+    std::vector<BeyondGate> beyond;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      for (int t = 0; t < problem.num_terms(); ++t) {
-        const Term& term = problem.term(t);
-        if (term.name != blocks_[b].name) continue;
-        const double most = std::pow(term.weight * manner.gate, 2);
-        std::size_t beyond = 0;
-        for (const auto& of_sample : hits[b]) {
-          beyond += static_cast<std::size_t>(
-              std::count_if(of_sample.begin(), of_sample.end(),
-                            [](const SurfaceHit& hit) { return hit.link < 0; }));
-        }
-        cost += 0.5 * static_cast<double>(beyond) * term.options.loss(most).rho;
+      BeyondGate& of_block = beyond.emplace_back(BeyondGate{blocks_[b].name, 0, manner.gate});
+      for (const auto& of_sample : hits[b]) {
+        of_block.count += static_cast<std::size_t>(
+            std::count_if(of_sample.begin(), of_sample.end(),
+                          [](const SurfaceHit& hit) { return hit.link < 0; }));
       }
     }
-    return cost;
+    const std::vector<Sample> with_points = matched(samples, hits, manner.gate);
+    return {step_.sums(empty, with_points, std::move(values), beyond, manner.held),
+            std::move(hits)};
   }
 
   /// Points whose face looks away from the camera do not lie there.
   void drop_backs(const AnyProblem& problem, std::span<const Sample> samples,
-                  RoundState& state) const {
-    const FeaturePlaces places(problem, span_of(state.values));
+                  const Eigen::VectorXd& values, std::vector<SurfaceHits>& hits) const {
+    const FeaturePlaces places(problem, values);
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const std::vector<MountedSensor>& sensors = problem.sensors();
       const auto camera =
@@ -217,42 +136,15 @@ class SurfaceRounds {
         const std::vector<PlacedFeature> placed =
             places.placed(static_cast<int>(camera - sensors.begin()), *seen, samples[s]);
         for (std::size_t i = 0; i < placed.size(); ++i) {
-          SurfaceHit& hit = state.hits[b][s][i];
+          SurfaceHit& hit = hits[b][s][i];
           if (hit.link >= 0 && hit.face.dot(placed[i].origin - placed[i].point) < 0.0) hit = {};
         }
       }
     }
   }
 
-  [[nodiscard]] static Eigen::VectorXd inside_bounds(const AnyProblem& problem,
-                                                     Eigen::VectorXd values) {
-    for (int p = 0; p < problem.table().size(); ++p) {
-      values[p] = std::clamp(values[p], problem.table()[p].lower, problem.table()[p].upper);
-    }
-    return values;
-  }
-
-  /// Values after a damped step, inside of bounds, and how far the cost should fall.
-  [[nodiscard]] std::pair<Eigen::VectorXd, double> stepped(const AnyProblem& problem,
-                                                           const RoundState& state,
-                                                           double damping) const {
-    Eigen::VectorXd values = state.values;
-    const Eigen::Index n = state.gradient.size();
-    if (n == 0) return {values, 0.0};
-    Eigen::MatrixXd hessian = state.hessian;
-    const double mean = hessian.trace() / static_cast<double>(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      hessian(i, i) += damping * hessian(i, i) + 1e-9 * mean + 1e-30;
-    }
-    const Eigen::VectorXd step = hessian.ldlt().solve(-state.gradient);
-    for (Eigen::Index i = 0; i < n; ++i) values[state.free[static_cast<std::size_t>(i)]] += step[i];
-    return {inside_bounds(problem, std::move(values)), -0.5 * step.dot(state.gradient)};
-  }
-
-  const SurfaceInput& input_;
-  const Config& config_;
-  std::size_t step_;
-  const std::vector<SurfaceBlock>& blocks_;
+  const MatchedStep& step_;
+  std::span<const SurfaceBlock> blocks_;
 };
 
 /// The cloud of a sample in a frame whose pose is searched for, and the links before it.
@@ -264,7 +156,7 @@ class SurfaceRounds {
   if (seen == nullptr) return posed;
   const Eigen::VectorXd zero = frame.zeroed(values);
   const Pose<double> before_T_base = frame.before(sample, zero).inverse();
-  const FeaturePlaces places(problem, SurfaceRounds::span_of(zero));
+  const FeaturePlaces places(problem, zero);
   for (const PlacedFeature& point : places.placed(frame.camera_number(), *seen, sample)) {
     if (point.seen) posed.points.push_back(before_T_base * point.point);
   }
@@ -324,9 +216,8 @@ struct SurfaceQuality {
 /// The whole of the rounds of a step.
 class SurfaceFit {
  public:
-  SurfaceFit(const SurfaceInput& input, const Config& config, std::size_t step,
-             const std::vector<SurfaceBlock>& blocks)
-      : config_(config.steps[step]), blocks_(blocks), rounds_(input, config, step, blocks) {}
+  SurfaceFit(const MatchedStep& step, std::span<const SurfaceBlock> blocks)
+      : step_(step), blocks_(blocks), rounds_(step, blocks) {}
 
   /// Where the rounds end.
   /// @param unknown  frames whose pose may be searched for
@@ -384,8 +275,8 @@ class SurfaceFit {
       const auto distances = [&](const Eigen::VectorXd& from, const std::set<int>& fixed) {
         const RoundManner manner{.gate = gate_, .rounds = 15, .tolerance = 1e-5, .held = fixed};
         const RoundState fitted = rounds_.run(manner, heard, from);
-        std::vector<SurfaceHits> hits;
-        rounds_.associate(*rounds_.problem_for({}), judged, fitted.values, gate_, hits);
+        const std::vector<SurfaceHits> hits =
+            rounds_.associated(*step_.problem(), judged, fitted.values, gate_);
         std::vector<std::vector<double>> all(judged.size());
         for (const SurfaceHits& of_block : hits) {
           for (std::size_t s = 0; s < judged.size(); ++s) {
@@ -438,8 +329,8 @@ class SurfaceFit {
                                          const Eigen::VectorXd& values, int points) const {
     const int looked = points > kFewestPoints ? 10 : 3;  // times as many points are looked at
     const std::vector<Sample> more = thinned(samples, looked * points);
-    std::vector<SurfaceHits> hits;
-    rounds_.associate(*rounds_.problem_for({}), more, values, kWidest, hits);
+    const std::vector<SurfaceHits> hits =
+        rounds_.associated(*step_.problem(), more, values, kWidest);
     std::vector<Sample> all = rounds_.matched(more, hits, kWidest);
     for (const SurfaceBlock& block : blocks_) {
       for (Sample& sample : all) {
@@ -453,7 +344,7 @@ class SurfaceFit {
   [[nodiscard]] RoundState coarse(std::span<const Sample> samples, const Eigen::VectorXd& values,
                                   const Shrinking& shrinking) const {
     constexpr double kHuber = 0.1;  // of the gate
-    RoundState state{.values = values};
+    RoundState state{{.values = values}, {}};
     for (const double gate : shrinking.gates) {
       state = rounds_.run(
           {.gate = gate, .huber = kHuber * gate, .rounds = shrinking.rounds, .tolerance = 1e-3},
@@ -471,11 +362,11 @@ class SurfaceFit {
   }
 
   [[nodiscard]] double contrast(std::span<const Sample> samples, const RoundState& state) const {
-    std::vector<SurfaceHits> hits;
-    rounds_.associate(*rounds_.problem_for({}), samples, state.values, 5.0 * kOnRobot, hits);
     double least = std::numeric_limits<double>::infinity();
-    for (const SurfaceHits& of_block : hits)
+    for (const SurfaceHits& of_block :
+         rounds_.associated(*step_.problem(), samples, state.values, 5.0 * kOnRobot)) {
       least = std::min(least, quality_of(of_block).contrast());
+    }
     return least;
   }
 
@@ -483,7 +374,7 @@ class SurfaceFit {
   [[nodiscard]] std::vector<Eigen::VectorXd> searched(std::span<const Sample> samples,
                                                       const Eigen::VectorXd& start,
                                                       std::span<const UnknownFrame> unknown) const {
-    const std::unique_ptr<AnyProblem> problem = rounds_.problem_for({});
+    const std::unique_ptr<AnyProblem> problem = step_.problem();
     std::vector<Eigen::VectorXd> all;
     for (const SurfaceBlock& block : blocks_) {
       for (const UnknownFrame& frame : unknown) {
@@ -503,38 +394,29 @@ class SurfaceFit {
 
   [[nodiscard]] RoundState fine(std::span<const Sample> samples, const Eigen::VectorXd& values) {
     constexpr int kMost = 40;
-    double scale = 0.0;  // metres, the widest of the losses
-    for (const BlockConfig& block : config_.error_blocks) {
-      if (!block.surface || block.loss.type == "none") continue;
-      const double weight = block.numbers.contains("scale") ? block.numbers.at("scale") : 1.0;
-      scale = std::max(scale, block.loss.scale * block.sigma.value_or(1.0) / weight);
-    }
-    if (scale > 0.0) {
-      gate_ = kScales * scale;
-      return rounds_.run({.gate = gate_, .rounds = kMost}, samples, values);
-    }
-    gate_ = 0.1;
-    RoundState state{.values = values};
-    for (int round = 0; round < kMost; ++round) {
-      state = rounds_.run({.gate = gate_, .rounds = 3}, samples, state.values);
-      std::vector<double> near;
-      for (const SurfaceHits& of_block : state.hits) {
-        for (const double d : quality_of(of_block).distances) {
-          if (d <= gate_) near.push_back(d);
-        }
-      }
-      if (near.empty()) break;
-      constexpr double kRobust = 4.0 * 1.4826;
-      const double next = std::clamp(kRobust * median_of(std::move(near)), kNarrowest, gate_);
-      const bool is_settled = next > 0.99 * gate_;
-      gate_ = next;
-      if (is_settled) break;
+    RoundState state{{.values = values}, {}};
+    const std::optional<double> of_losses = step_.gate_of_losses(blocks_);
+    gate_ = of_losses.value_or(0.1);
+    if (!of_losses) {
+      narrow(
+          gate_, kNarrowest, state,
+          [&](double gate, const Eigen::VectorXd& from) {
+            return rounds_.run({.gate = gate, .rounds = 3}, samples, from);
+          },
+          [](const RoundState& at) {
+            std::vector<double> distances;
+            for (const SurfaceHits& of_block : at.hits) {
+              const std::vector<double> more = quality_of(of_block).distances;
+              distances.insert(distances.end(), more.begin(), more.end());
+            }
+            return distances;
+          });
     }
     return rounds_.run({.gate = gate_, .rounds = kMost}, samples, state.values);
   }
 
-  const StepConfig& config_;
-  const std::vector<SurfaceBlock>& blocks_;
+  const MatchedStep& step_;
+  std::span<const SurfaceBlock> blocks_;
   SurfaceRounds rounds_;
   double gate_ = kWidest;
 };
@@ -545,7 +427,7 @@ class SurfaceFit {
                               std::span<const Sample> samples, const Eigen::VectorXd& values) {
   constexpr double kNear = 0.04, kFacing = 0.3, kHidden = 0.02;  // metres; cosine; metres
   constexpr int kFaces = 60, kFewest = 20;                       // of a link and sample; of a link
-  const ParameterValues at = SurfaceRounds::span_of(values);
+  const ParameterValues at = values;
   const FeaturePlaces places(problem, at);
   const auto camera = std::find_if(
       problem.sensors().begin(), problem.sensors().end(),
@@ -692,23 +574,6 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
   diagnostics.note(of.place, text + links_off(block.surface, hits));
 }
 
-/// Gives a block whose loss is in metres the noise that its points show, and the same loss in sigmas.
-void keep_loss(const std::string& name, const SurfaceHits& hits, double gate, StepConfig& step) {
-  BlockConfig& block = *std::find_if(step.error_blocks.begin(), step.error_blocks.end(),
-                                     [&](const BlockConfig& one) { return one.name == name; });
-  if (block.loss.type == "none" || block.sigma) return;
-  std::vector<double> near;
-  for (const auto& of_sample : hits) {
-    for (const SurfaceHit& hit : of_sample) {
-      if (hit.distance <= gate) near.push_back(hit.distance);
-    }
-  }
-  if (near.empty()) return;
-  constexpr double kOfMedian = 1.4826;
-  block.sigma = std::max(1e-6, kOfMedian * median_of(std::move(near)));
-  block.loss.scale /= *block.sigma;
-}
-
 /// Doubts zeros and geometry of joints that clouds which had no say do not confirm.
 void check_joints(const SurfaceFit& fit, const SurfaceInput& input, const StepConfig& step,
                   const ParameterTable& table, std::span<const Sample> samples,
@@ -752,7 +617,7 @@ void check_camera(const SurfaceBlock& block, const BlockConfig& of, const AnyPro
         sensors.begin(), sensors.end(),
         [&](const MountedSensor& sensor) { return sensor.mount().name == block.pair.camera; });
     const SampledChain& chain = camera->chains().front();
-    const ParameterValues at = SurfaceRounds::span_of(values);
+    const ParameterValues at = values;
     const Vector3<double> eye =
         chain.tip(sample, corrections_for(chain.parameters(), at)).translation;
     const SurfaceHit hit =
@@ -800,7 +665,7 @@ void check_units(const SurfaceBlock& block, std::span<const Sample> samples,
 }
 
 /// A few points on the first link, to assemble what depends on samples.
-[[nodiscard]] std::vector<Sample> assumed_samples(const std::vector<SurfaceBlock>& blocks,
+[[nodiscard]] std::vector<Sample> assumed_samples(std::span<const SurfaceBlock> blocks,
                                                   std::span<const Sample> samples,
                                                   const std::string& base) {
   constexpr int kPoints = 8;
@@ -825,20 +690,22 @@ void check_units(const SurfaceBlock& block, std::span<const Sample> samples,
 
 /// Associates the clouds of a step.
 /// @param values  in: where rounds begin; out: where they ended
-void match_clouds(const SurfaceInput& input, Config& config, std::size_t step,
-                  const std::vector<SurfaceBlock>& blocks, const Calibration& assumed,
+void match_clouds(const SurfaceInput& input, Config& config, std::size_t number,
+                  std::span<const SurfaceBlock> blocks, const Calibration& assumed,
                   std::vector<Sample>& samples, Eigen::VectorXd& values, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
   const std::vector<Sample> heard = heard_samples(samples, input.exclude);
-  SurfaceFit fit(input, config, step, blocks);
+  StepConfig& of_step = config.steps[number];
+  const MatchedStep step(input, config, number);
+  SurfaceFit fit(step, blocks);
   const Eigen::VectorXd start = values;
-  values = fit.run(heard, start, assumed.steps[step].unknown_frames, diagnostics).values;
-  const SurfaceRounds rounds(input, config, step, blocks);
-  const std::unique_ptr<AnyProblem> problem = rounds.problem_for({});
-  std::vector<SurfaceHits> hits;
-  rounds.associate(*problem, samples, values, std::numeric_limits<double>::infinity(), hits);
+  values = fit.run(heard, start, assumed.steps[number].unknown_frames, diagnostics).values;
+  const SurfaceRounds rounds(step, blocks);
+  const std::unique_ptr<AnyProblem> problem = step.problem();
+  const std::vector<SurfaceHits> hits =
+      rounds.associated(*problem, samples, values, std::numeric_limits<double>::infinity());
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const BlockConfig& of = block_of(config.steps[step], blocks[b].name);
+    const BlockConfig& of = block_of(of_step, blocks[b].name);
     report_fit(blocks[b], of, fit.gate(), hits[b], samples.size(), diagnostics);
     check_camera(blocks[b], of, *problem, samples, values, diagnostics);
     if (diagnostics.errors.size() == before) {
@@ -846,11 +713,12 @@ void match_clouds(const SurfaceInput& input, Config& config, std::size_t step,
     }
   }
   if (diagnostics.errors.size() == before) {
-    check_joints(fit, input, config.steps[step], assumed.table, heard, start, values, diagnostics);
+    check_joints(fit, input, of_step, assumed.table, heard, start, values, diagnostics);
   }
   samples = rounds.matched(samples, hits, fit.gate());
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    keep_loss(blocks[b].name, hits[b], fit.gate(), config.steps[step]);
+    constexpr double kLeast = 1e-6;  // metres
+    keep_loss(block_of(of_step, blocks[b].name), quality_of(hits[b]).distances, fit.gate(), kLeast);
   }
 }
 
@@ -867,15 +735,17 @@ bool compares_surface(const Config& config) {
 std::vector<double> match_surface(const SurfaceInput& input, Config& config,
                                   std::vector<Sample>& samples, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
-  const std::vector<std::vector<SurfaceBlock>> steps =
-      read_surface_blocks(input, config, diagnostics);
+  std::vector<std::vector<SurfaceBlock>> steps = read_surface_blocks(input, config, diagnostics);
   if (diagnostics.errors.size() > before || samples.empty()) return {};
   Eigen::VectorXd values;
   std::vector<Sample> matched = samples;
   for (std::size_t s = 0; s < steps.size(); ++s) {
-    std::vector<SurfaceBlock> clouds, masks;
-    for (const SurfaceBlock& block : steps[s]) (block.is_outline ? masks : clouds).push_back(block);
     if (steps[s].empty()) continue;
+    const auto first_mask =
+        std::stable_partition(steps[s].begin(), steps[s].end(),
+                              [](const SurfaceBlock& block) { return !block.is_outline; });
+    const std::span<const SurfaceBlock> clouds(steps[s].begin(), first_mask),
+        masks(first_mask, steps[s].end());
     for (const SurfaceBlock& block : clouds) {
       detail::check_units(block, samples, diagnostics);
       const int most = block_of(config.steps[s], block.name).surface->points;

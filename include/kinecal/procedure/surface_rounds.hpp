@@ -19,7 +19,7 @@
 
 namespace kinecal {
 
-/// True if an error block compares points with the surface of the robot.
+/// True if an error block compares clouds or masks with the surface of the robot.
 [[nodiscard]] bool compares_surface(const Config& config);
 
 /// Associates the points of all samples with the surface of the robot.

@@ -10,6 +10,8 @@
 #include <tuple>
 #include <utility>
 
+#include "kinecal/files/meshes/read_mesh.hpp"
+
 namespace kinecal {
 
 namespace detail {
@@ -112,34 +114,47 @@ struct TriangleList {
   std::vector<Corners> triangles;
 };
 
-/// The triangles of a link.
-/// @param cell  metres: vertices within one cube of this size are one, their mean; zero: those at the same place
-[[nodiscard]] TriangleList triangles_of(const TriangleTree& tree, double cell) {
+/// The triangles of a link; those that meet have vertices in common.
+[[nodiscard]] TriangleList triangles_of(const TriangleTree& tree) {
   TriangleList list;
   std::map<std::tuple<double, double, double>, std::uint32_t> numbers;
-  std::vector<double> counts;
   const auto number_of = [&](const Vector3<double>& p) {
-    const Vector3<double> k = cell > 0.0 ? Vector3<double>((p / cell).array().floor()) : p;
-    const auto [known, is_new] = numbers.emplace(std::tuple(k.x(), k.y(), k.z()),
+    const auto [known, is_new] = numbers.emplace(std::tuple(p.x(), p.y(), p.z()),
                                                  static_cast<std::uint32_t>(list.vertices.size()));
-    if (is_new) {
-      list.vertices.push_back(p);
-      counts.push_back(1.0);
-    } else if (cell > 0.0) {
-      Vector3<double>& mean = list.vertices[known->second];
-      mean += (p - mean) / ++counts[known->second];
-    }
+    if (is_new) list.vertices.push_back(p);
     return known->second;
   };
   std::set<Corners> known;  // trees have some triangles twice
   for (int t = 0; t < tree.count(); ++t) {
     const auto& corners = tree.corners(t);
     Corners c = {number_of(corners[0]), number_of(corners[1]), number_of(corners[2])};
-    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
     std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
     if (known.insert(c).second) list.triangles.push_back(c);
   }
   return list;
+}
+
+/// The same with fewer triangles.
+[[nodiscard]] TriangleList simplified(const TriangleList& list, std::size_t triangles) {
+  if (list.triangles.size() <= triangles) return list;
+  Mesh mesh;
+  for (const Vector3<double>& vertex : list.vertices) {
+    for (const double x : vertex) mesh.vertices.push_back(static_cast<float>(x));
+  }
+  for (const Corners& corners : list.triangles) {
+    mesh.triangles.insert(mesh.triangles.end(), corners.begin(), corners.end());
+  }
+  mesh = thinned(mesh, triangles);
+  TriangleList simple;
+  for (std::size_t v = 0; v < mesh.num_vertices(); ++v) {
+    const float* x = &mesh.vertices[3 * v];
+    simple.vertices.emplace_back(x[0], x[1], x[2]);
+  }
+  for (std::size_t t = 0; t < mesh.num_triangles(); ++t) {
+    const std::uint32_t* c = &mesh.triangles[3 * t];
+    simple.triangles.push_back({c[0], c[1], c[2]});
+  }
+  return simple;
 }
 
 /// True if a pixel is farther than kMaskBorder from the border of an image.
@@ -154,11 +169,7 @@ struct TriangleList {
 Outliner::Outliner(const RobotSurface& surface, std::size_t triangles) {
   for (const SurfaceLink& of : surface.links()) {
     Link& link = links_.emplace_back();
-    detail::TriangleList list = detail::triangles_of(of.tree, 0.0);
-    for (double cell = std::max(1e-6, 0.02 * of.tree.radius()); list.triangles.size() > triangles;
-         cell *= 1.4) {
-      list = detail::triangles_of(of.tree, cell);
-    }
+    detail::TriangleList list = detail::simplified(detail::triangles_of(of.tree), triangles);
     link.vertices = std::move(list.vertices);
     link.triangles = std::move(list.triangles);
     const bool is_inside_out = of.tree.facts().closed && of.tree.facts().volume < 0.0;

@@ -40,7 +40,7 @@ struct OutlinePoint {
 /// Finds outlines of a robot.
 class Outliner {
  public:
-  /// @param triangles  of a link, at most: near vertices become one until there are no more
+  /// @param triangles  of a link, at most: a larger mesh is simplified, as for viewers
   explicit Outliner(const RobotSurface& surface,
                     std::size_t triangles = std::numeric_limits<std::size_t>::max());
 

@@ -59,7 +59,7 @@ OutlineHits match_outlines(const Outliner& outliner, const RobotSurface& surface
   OutlineHits hits(samples.size());
   const auto match = [&](int s, int) {
     const Sample& sample = samples[static_cast<std::size_t>(s)];
-    std::vector<OutlineHit>& of_sample = hits[static_cast<std::size_t>(s)];
+    OutlineMatch& of_sample = hits[static_cast<std::size_t>(s)];
     const Observation* seen = sample.observation(pair.camera);
     if (seen == nullptr || seen->features.empty() || !seen->camera) return;
     const int width = seen->camera->width, height = seen->camera->height;
@@ -84,7 +84,7 @@ OutlineHits match_outlines(const Outliner& outliner, const RobotSurface& surface
     };
     const PixelGrid points(pixels(outline), width, height);
     for (std::size_t i = 0; i < edges.size(); ++i) {
-      OutlineHit& hit = of_sample.emplace_back();
+      OutlineHit& hit = of_sample.edges.emplace_back();
       if (!edges[i].pixel.allFinite()) continue;
       const int point = points.nearest(
           edges[i].pixel, bound, [&](int k) { return agree(i, static_cast<std::size_t>(k)); });
@@ -93,7 +93,7 @@ OutlineHits match_outlines(const Outliner& outliner, const RobotSurface& surface
     }
     const PixelGrid grid(pixels(edges), width, height);
     for (std::size_t i = 0; i < outline.size(); ++i) {
-      OutlineHit& hit = of_sample.emplace_back();
+      OutlineHit& hit = of_sample.outline.emplace_back();
       hit.on = outline[i];
       const int edge = grid.nearest(outline[i].pixel, bound,
                                     [&](int k) { return agree(static_cast<std::size_t>(k), i); });
@@ -111,31 +111,17 @@ std::vector<Sample> with_outline(const RobotSurface& surface, const SurfacePair&
                                  double gate) {
   std::vector<Sample> matched(samples.begin(), samples.end());
   for (std::size_t s = 0; s < matched.size(); ++s) {
-    std::vector<Observation>& all = matched[s].observations;
-    std::erase_if(all, [&](const Observation& one) { return one.sensor == pair.robot; });
-    const auto seen = std::find_if(
-        all.begin(), all.end(), [&](const Observation& one) { return one.sensor == pair.camera; });
-    if (seen == all.end()) continue;
-    std::vector<std::vector<const OutlineHit*>> by_link(surface.links().size());
-    for (const OutlineHit& hit : hits[s]) {
-      if (hit.edge < 0 || hit.distance > gate) continue;
-      by_link[static_cast<std::size_t>(hit.on.link)].push_back(&hit);
-    }
-    std::vector<Feature> edges;
-    Observation of_robot{.sensor = pair.robot, .features = {}};
-    for (std::size_t link = 0; link < by_link.size(); ++link) {
-      for (const OutlineHit* hit : by_link[link]) {
-        Feature& edge = edges.emplace_back(seen->features[static_cast<std::size_t>(hit->edge)]);
-        edge.id.reset();  // some edges occur twice
-        edge.conditions["nu"] = hit->on.normal.x();
-        edge.conditions["nv"] = hit->on.normal.y();
-        Feature& on_link = of_robot.features.emplace_back();
-        on_link.frame = surface.links()[link].name;
-        on_link.point = hit->on.point;
-      }
-    }
-    seen->features = std::move(edges);
-    all.push_back(std::move(of_robot));
+    std::vector<SurfaceFeature> features;
+    hits[s].for_each([&](const OutlineHit& hit) {
+      if (hit.edge < 0 || hit.distance > gate) return;
+      Feature edge =
+          samples[s].observation(pair.camera)->features[static_cast<std::size_t>(hit.edge)];
+      edge.id.reset();  // some edges occur twice
+      edge.conditions["nu"] = hit.on.normal.x();
+      edge.conditions["nv"] = hit.on.normal.y();
+      features.push_back({hit.on.link, std::move(edge), {.point = hit.on.point}});
+    });
+    set_matched(surface, pair, std::move(features), matched[s]);
   }
   return matched;
 }

@@ -22,8 +22,22 @@ struct OutlineHit {
   double distance = std::numeric_limits<double>::infinity();  ///< pixels
 };
 
-/// Of each sample: one hit for each feature of the camera, in their order, then one for each point of the outline.
-using OutlineHits = std::vector<std::vector<OutlineHit>>;
+/// What belongs together in a sample.
+struct OutlineMatch {
+  std::vector<OutlineHit>
+      edges;  ///< of each feature of the camera: the nearest point of the outline
+  std::vector<OutlineHit> outline;  ///< of each point of the outline: the nearest edge
+
+  /// Calls a function for all of them.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (const OutlineHit& hit : edges) visit(hit);
+    for (const OutlineHit& hit : outline) visit(hit);
+  }
+};
+
+/// By sample.
+using OutlineHits = std::vector<OutlineMatch>;
 
 /// Associates masks and outlines.
 /// @param pair     the camera observes edges of masks: pixels, with their outward normals as conditions nu, nv if known

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -83,9 +84,16 @@ class SurfaceReader {
     const auto [known, is_new] = meshes_.try_emplace(visual.mesh);
     if (is_new) {
       try {
-        // A tree copes with them; a mesh beyond is simplified as for viewers.
-        constexpr MeshLimits kLimits{.triangles = 2000000, .bytes = std::uintmax_t{1} << 30};
+        constexpr std::size_t kMost = 2000000, kAll = std::numeric_limits<std::size_t>::max();
+        constexpr MeshLimits kLimits{.triangles = kAll, .bytes = std::uintmax_t{1} << 30};
         known->second = read_mesh(find_mesh(visual.mesh, source_.places), kLimits);
+        if (const std::size_t triangles = known->second.num_triangles(); triangles > kMost) {
+          known->second = thinned(known->second, kMost);
+          diagnostics_.note(
+              {source_.urdf, 0},
+              fmt::format("mesh '{}' has {} triangles; it is simplified to {}",
+                          printable(visual.mesh), triangles, known->second.num_triangles()));
+        }
       } catch (const MeshError& error) {
         diagnostics_.error(
             {source_.urdf, 0},

@@ -126,38 +126,41 @@ void associate(const RobotSurface& surface, const SurfacePair& pair, const AnyPr
                          match);
 }
 
+void set_matched(const RobotSurface& surface, const SurfacePair& pair,
+                 std::vector<SurfaceFeature> features, Sample& sample) {
+  std::vector<Observation>& all = sample.observations;
+  std::erase_if(all, [&](const Observation& one) { return one.sensor == pair.robot; });
+  const auto seen = std::find_if(all.begin(), all.end(),
+                                 [&](const Observation& one) { return one.sensor == pair.camera; });
+  if (seen == all.end()) return;
+  std::stable_sort(features.begin(), features.end(), [](const auto& one, const auto& other) {
+    return one.link < other.link;  // chains change seldom
+  });
+  Observation of_robot{.sensor = pair.robot, .features = {}};
+  seen->features.clear();
+  for (SurfaceFeature& feature : features) {
+    feature.on_link.frame = surface.links()[static_cast<std::size_t>(feature.link)].name;
+    seen->features.push_back(std::move(feature.seen));
+    of_robot.features.push_back(std::move(feature.on_link));
+  }
+  all.push_back(std::move(of_robot));
+}
+
 std::vector<Sample> with_surface(const RobotSurface& surface, const SurfacePair& pair,
                                  std::span<const Sample> samples, const SurfaceHits& hits,
                                  double gate) {
   std::vector<Sample> matched(samples.begin(), samples.end());
   for (std::size_t s = 0; s < matched.size(); ++s) {
-    std::vector<Observation>& all = matched[s].observations;
-    std::erase_if(all, [&](const Observation& one) { return one.sensor == pair.robot; });
-    const auto seen = std::find_if(
-        all.begin(), all.end(), [&](const Observation& one) { return one.sensor == pair.camera; });
-    if (seen == all.end()) continue;
-    std::vector<std::vector<std::size_t>> by_link(surface.links().size());  // chains change seldom
+    std::vector<SurfaceFeature> features;
     for (std::size_t i = 0; i < hits[s].size(); ++i) {
       const SurfaceHit& hit = hits[s][i];
       if (hit.link < 0 || hit.distance > gate) continue;
-      by_link[static_cast<std::size_t>(hit.link)].push_back(i);
+      const Feature& point = samples[s].observation(pair.camera)->features[i];
+      features.push_back({hit.link, point, {.point = hit.point, .id = point.id}});
+      features.back().on_link.conditions = {
+          {"nx", hit.normal.x()}, {"ny", hit.normal.y()}, {"nz", hit.normal.z()}};
     }
-    std::vector<Feature> points;
-    Observation of_robot{.sensor = pair.robot, .features = {}};
-    for (std::size_t link = 0; link < by_link.size(); ++link) {
-      for (const std::size_t i : by_link[link]) {
-        const SurfaceHit& hit = hits[s][i];
-        Feature& on_link = of_robot.features.emplace_back();
-        on_link.frame = surface.links()[link].name;
-        on_link.point = hit.point;
-        on_link.id = seen->features[i].id;
-        on_link.conditions = {
-            {"nx", hit.normal.x()}, {"ny", hit.normal.y()}, {"nz", hit.normal.z()}};
-        points.push_back(std::move(seen->features[i]));
-      }
-    }
-    seen->features = std::move(points);
-    all.push_back(std::move(of_robot));
+    set_matched(surface, pair, std::move(features), matched[s]);
   }
   return matched;
 }

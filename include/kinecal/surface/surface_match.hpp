@@ -45,6 +45,17 @@ void associate(const RobotSurface& surface, const SurfacePair& pair, const AnyPr
                ParameterValues values, std::span<const Sample> samples, double bound, int threads,
                SurfaceHits& hits);
 
+/// A feature of a camera, and the place on a link that belongs to it.
+struct SurfaceFeature {
+  int link = -1;    ///< number of the link in the surface
+  Feature seen;     ///< by the camera
+  Feature on_link;  ///< its frame is set
+};
+
+/// Replaces what a camera observed in a sample by what belongs to the surface, link after link.
+void set_matched(const RobotSurface& surface, const SurfacePair& pair,
+                 std::vector<SurfaceFeature> features, Sample& sample);
+
 /// The samples with the observation of the surface; points beyond the gate are left out.
 /// @param hits  of all points of the camera
 /// @param gate  metres
