@@ -4,20 +4,53 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "kinecal/config/choose_lenses.hpp"
 #include "kinecal/config/register.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
 #include "support/calibrated.hpp"
 #include "support/division_lens.hpp"
 #include "support/open_scene.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/wheels.hpp"
 
 namespace kinecal {
 namespace {
 
 using testing::HasSubstr;
+
+/// A base that drives: its sample before this one is in each sample.
+TEST(RegisteredBlockWithoutSensor, CalibratesFromYaml) {
+  if (registry().block("wheels") == nullptr) register_block<test::Wheels>({});
+  Diagnostics found;
+  CalibrationSetup setup{
+      .robot = test::mobile_manipulator(),
+      .config =
+          parse_config("base_link: base_link\nmodels: []\nfree_params: [base_left, base_right, "
+                       "base_track]\nerror_blocks:\n- {name: base, type: wheels}\n",
+                       "c.yaml", found)};
+  EXPECT_THAT(found.errors, testing::IsEmpty());
+  double left = 0.0, right = 0.0;
+  for (int n = 0; n < 40; ++n) {
+    const double by_left = 1.0 + std::sin(n), by_right = 1.0 + std::cos(2.0 * n);
+    left += by_left;
+    right += by_right;
+    Sample& sample = setup.samples.emplace_back();
+    sample.joint_names = {"wheel_left", "wheel_right"};
+    sample.joint_positions = {left, right};
+    const double noise = 1e-4 * std::sin(7.0 * n);  // metres
+    sample.conditions = {{"way", 0.5 * (0.102 * by_left + 0.0985 * by_right) + noise},
+                         {"turn", (0.0985 * by_right - 0.102 * by_left) / 0.53 - noise}};
+  }
+  const CalibratedRobot calibrated = calibrate_robot(std::move(setup));
+  ASSERT_TRUE(calibrated.result.converged);
+  EXPECT_NEAR(calibrated.result.table["base_left"].value, 0.102, 1e-4);
+  EXPECT_NEAR(calibrated.result.table["base_right"].value, 0.0985, 1e-4);
+  EXPECT_NEAR(calibrated.result.table["base_track"].value, 0.53, 1e-3);
+}
 
 class RegisteredBlock : public test::FolderTest {
  protected:

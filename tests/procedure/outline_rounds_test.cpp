@@ -14,7 +14,7 @@
 #include "kinecal/procedure/calibrate_robot.hpp"
 #include "support/data.hpp"
 #include "support/mask_robot.hpp"
-#include "support/temporary_folder.hpp"
+#include "support/mesh_robot_test.hpp"
 
 namespace kinecal {
 namespace {
@@ -32,31 +32,26 @@ ParameterTable begin_of(const PreparedCalibration& of) {
   return table;
 }
 
-/// An arm with meshes in a folder, and masks of it.
-class OutlineRoundsOfAnArm : public test::FolderTest {
- protected:
-  OutlineRoundsOfAnArm() { test::write_meshes(folder_); }
+/// The configuration of clouds, of masks.
+std::string mask_config(const std::string& initial, const std::string& free_params = "") {
+  std::string config = test::mesh_config(initial, "", free_params);
+  for (const auto& [what, with] : {std::pair<std::string, std::string>("camera3d", "camera2d"),
+                                   {"chain3d_to_mesh", "camera2d_to_mesh"}}) {
+    config.replace(config.find(what), what.size(), with);
+  }
+  return config;
+}
 
+/// The arm, and masks of it.
+class OutlineRoundsOfAnArm : public test::MeshRobotTest {
+ protected:
   CalibrationSetup setup(const std::string& initial, test::CloudPlan plan = {},
                          const std::string& free_params = "") {
-    std::string config = test::mesh_config(initial, "", free_params);
-    const auto replace = [&](const std::string& what, const std::string& with) {
-      config.replace(config.find(what), what.size(), with);
-    };
-    replace("camera3d", "camera2d");
-    replace("chain3d_to_mesh", "camera2d_to_mesh");
-    Diagnostics found;
-    CalibrationSetup setup{.robot = parse_urdf(urdf_, "arm.urdf"),
-                           .config = parse_config(config, "calibrate.yaml", found),
-                           .urdf_text = urdf_,
-                           .urdf = (folder_ / "arm.urdf").string()};
-    EXPECT_THAT(found.errors, IsEmpty());
+    CalibrationSetup setup = setup_of(mask_config(initial, free_params));
     plan.pixels = 2;  // of clouds, which are not used
     setup.samples = test::mask_robot_samples(setup.robot, plan);
     return setup;
   }
-
-  std::string urdf_ = test::mesh_robot_urdf();
 };
 
 TEST_F(OutlineRoundsOfAnArm, FindTheCamera) {
@@ -111,6 +106,75 @@ TEST_F(OutlineRoundsOfAnArm, RefuseMasksOfOtherJoints) {
   }
   EXPECT_THAT(prepare(masks).diagnostics.errors,
               testing::ElementsAre(HasSubstr("the masks do not show the robot")));
+}
+
+/// The camera pans beside the robot: it stands elsewhere in each sample.
+TEST_F(OutlineRoundsOfAnArm, FindACameraThatMoves) {
+  const auto replace = [&](const std::string& what, const std::string& with) {
+    urdf_.replace(urdf_.find(what), what.size(), with);
+  };
+  replace("<joint name=\"camera_joint\" type=\"fixed\"><parent link=\"base\"/>",
+          "<link name=\"stand\"/><joint name=\"stand_pan\" type=\"revolute\"><parent "
+          "link=\"base\"/><child link=\"stand\"/><axis xyz=\"0 0 1\"/><limit lower=\"-1\" "
+          "upper=\"1\" effort=\"1\" velocity=\"1\"/></joint><joint name=\"camera_joint\" "
+          "type=\"fixed\"><parent link=\"stand\"/>");
+  CalibrationSetup moving = setup_of(mask_config(kStart));
+  moving.samples = test::mesh_robot_samples(parse_urdf(test::mesh_robot_urdf(), "arm.urdf"),
+                                            {.samples = 8, .pixels = 2});
+  double pan = -0.14;
+  for (Sample& sample : moving.samples) {
+    pan += 0.03;
+    const Pose<double> base_T_stand{exp(Vector3<double>(0.0, 0.0, pan)), {0.0, 0.0, 0.0}};
+    View view;
+    view.frame = "camera";
+    view.camera = test::mask_camera();
+    view.image =
+        test::mask_of(test::mesh_robot_surface(),
+                      test::mesh_robot_poses(parse_urdf(test::mesh_robot_urdf(), "arm.urdf"),
+                                             test::positions_of(sample)),
+                      base_T_stand * test::true_camera());
+    sample.observations = MaskFinder{}.find(view).observations;
+    sample.joint_names.emplace_back("stand_pan");
+    sample.joint_positions.push_back(pan);
+  }
+  const PreparedCalibration prepared = prepare(std::move(moving));
+  ASSERT_THAT(prepared.diagnostics.errors, IsEmpty());
+  EXPECT_LT(distance_of(camera_in(begin_of(prepared)), test::true_camera()), 3e-3);
+  EXPECT_LT(angle_of(camera_in(begin_of(prepared)), test::true_camera()), 3e-3);
+}
+
+/// A depth camera and one whose images are segmented, at one place in the tests, each with a frame of its own.
+TEST_F(OutlineRoundsOfAnArm, GoTogetherWithClouds) {
+  const std::string link = "<link name=\"camera\"/>\n";
+  urdf_.insert(urdf_.find(link),
+               "<link name=\"eye\"/><joint name=\"eye_joint\" type=\"fixed\"><parent "
+               "link=\"base\"/><child link=\"eye\"/></joint>\n");
+  const std::string frame = ", x: true, y: true, z: true, roll: true, pitch: true, yaw: true}\n",
+                    start = std::string(", ") + kStart + "}\n";
+  CalibrationSetup both = setup_of(
+      "base_link: base\nmodels:\n- {name: camera, type: camera3d, frame: camera}\n- {name: eye, "
+      "type: camera2d, frame: eye}\nfree_frames:\n- {name: camera_joint" +
+      frame + "- {name: eye_joint" + frame + "free_frames_initial_values:\n- {name: camera_joint" +
+      start + "- {name: eye_joint" + start +
+      "error_blocks:\n- {name: outline, type: camera2d_to_mesh, model: eye}\n- {name: surface, "
+      "type: chain3d_to_mesh, model: camera}\n");
+  const Robot robot = parse_urdf(test::mesh_robot_urdf(), "arm.urdf");
+  both.samples = test::mesh_robot_samples(robot, {.noise = 0.001});
+  for (Sample& sample : both.samples) {
+    View view;
+    view.frame = "eye";
+    view.camera = test::mask_camera();
+    view.image = test::mask_of(test::mesh_robot_surface(),
+                               test::mesh_robot_poses(robot, test::positions_of(sample)),
+                               test::true_camera());
+    Observation seen = MaskFinder{"eye"}.find(view).observations.at(0);
+    sample.observations.push_back(std::move(seen));
+  }
+  const CalibratedRobot calibrated = calibrate_robot(std::move(both));
+  ASSERT_TRUE(calibrated.is_usable()) << calibrated.judgement.reasons.front();
+  const ParameterTable& table = calibrated.result.table;
+  EXPECT_LT(distance_of(camera_in(table), test::true_camera()), 1e-3);
+  EXPECT_LT(distance_of(camera_in(table, "eye_joint"), test::true_camera()), 3e-3);
 }
 
 /// Ten masks of a KUKA Med 7: README of the data set.

@@ -11,8 +11,7 @@
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/procedure/calibrate_robot.hpp"
 #include "support/data.hpp"
-#include "support/mesh_robot.hpp"
-#include "support/temporary_folder.hpp"
+#include "support/mesh_robot_test.hpp"
 
 namespace kinecal {
 namespace {
@@ -22,18 +21,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// An arm with meshes in a folder, and clouds of it.
-class SurfaceRoundsOfAnArm : public test::FolderTest {
+/// The arm, and clouds of it.
+class SurfaceRoundsOfAnArm : public test::MeshRobotTest {
  protected:
-  SurfaceRoundsOfAnArm() { test::write_meshes(folder_); }
-
   CalibrationSetup setup(const std::string& config, const test::CloudPlan& plan = {}) {
-    Diagnostics found;
-    CalibrationSetup setup{.robot = parse_urdf(urdf_, "arm.urdf"),
-                           .config = parse_config(config, "calibrate.yaml", found),
-                           .urdf_text = urdf_,
-                           .urdf = (folder_ / "arm.urdf").string()};
-    EXPECT_THAT(found.errors, IsEmpty());
+    CalibrationSetup setup = setup_of(config);
     setup.samples = test::mesh_robot_samples(setup.robot, plan);
     return setup;
   }
@@ -41,8 +33,6 @@ class SurfaceRoundsOfAnArm : public test::FolderTest {
   std::vector<std::string> errors_of(const CalibrationSetup& of) {
     return prepare(of).diagnostics.errors;
   }
-
-  std::string urdf_ = test::mesh_robot_urdf();
 };
 
 TEST_F(SurfaceRoundsOfAnArm, FindTheCameraToTheNoise) {

@@ -185,10 +185,9 @@ inline constexpr const char* kStart =
     "x: -1.26, y: -0.63, z: 0.79, roll: -1.62, pitch: 0.03, yaw: -1.24";
 
 /// The pose of the camera in a table.
-inline Pose<double> camera_in(const ParameterTable& table) {
-  const auto value = [&](const char* axis) {
-    return table["camera_joint_" + std::string(axis)].value;
-  };
+inline Pose<double> camera_in(const ParameterTable& table,
+                              const std::string& joint = "camera_joint") {
+  const auto value = [&](const char* axis) { return table[joint + "_" + axis].value; };
   return {exp(Vector3<double>(value("a"), value("b"), value("c"))),
           Vector3<double>(value("x"), value("y"), value("z"))};
 }

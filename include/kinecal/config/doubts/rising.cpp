@@ -11,10 +11,10 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/doubts/occurrences.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
-#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/files/urdf/urdf_places.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/solve/statistics.hpp"
+#include "kinecal/trust/plain_equations.hpp"
 
 namespace kinecal {
 
@@ -65,10 +65,10 @@ struct FitOfSamples {
   std::erase_if(free, [&](int p) { return held.contains(calibration.table[p].name); });
   if (free.empty()) {
     const Eigen::VectorXd values = calibration.table.values();
-    const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
-    const auto blocks = block_statistics(*step.problem, all, all);
+    const auto blocks = block_statistics(*step.problem, values, values);
     if (blocks.empty()) return std::nullopt;
-    return FitOfSamples{normal_equations(*step.problem, all, nullptr, Losses::as_given, 1).cost,
+    const FreeSet none({}, calibration.table.size());
+    return FitOfSamples{plain_equations(*step.problem, none, values).cost,
                         blocks.front().after.mean, blocks.front().unit};
   }
   step.free = FreeSet(std::move(free), calibration.table.size());
