@@ -351,8 +351,17 @@ void check_model_types(std::vector<ConfigItem>& items, StepConfig& step) {
   }
 }
 
+/// Error blocks that look at joints and conditions only need no model.
+[[nodiscard]] bool needs_model(const StepConfig& step) {
+  const auto looks_at_none = [](const BlockConfig& block) {
+    const BlockEntry* entry = entry_of(block);
+    return entry != nullptr && entry->sensors.empty();
+  };
+  return step.error_blocks.empty() || !std::ranges::all_of(step.error_blocks, looks_at_none);
+}
+
 void check_step(ConfigMap& map, StepConfig& step, NothingFree nothing_free) {
-  require_items(map, kModelItems);
+  if (needs_model(step)) require_items(map, kModelItems);
   require_items(map, kErrorBlockItems);
   check_free_parameters(map, step);
   std::vector<std::string> free;

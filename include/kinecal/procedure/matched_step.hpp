@@ -118,22 +118,24 @@ template <class State, class Match>
 }
 
 /// Rounds whose gate narrows to four robust standard deviations of what is within it.
-/// @param gate       in: the first one; out: the last one
+/// @param gate       in: beyond it, nothing counts at all; out: the last one
 /// @param narrowest  at least
-/// @param run        State(gate, values): rounds from there
+/// @param state      in: values
+/// @param run        State(gate, values, rounds): so many rounds from there
 /// @param distances  of all features of a state
 template <class State, class Run, class Distances>
 void narrow(double& gate, double narrowest, State& state, const Run& run,
             const Distances& distances) {
-  constexpr int kMost = 40;
+  constexpr int kMost = 40, kRounds = 3;
   constexpr double kRobust = 4.0 * 1.4826;
-  for (int round = 0; round < kMost; ++round) {
-    state = run(gate, state.values);
+  for (int n = 0; n < kMost; ++n) {
+    // First only the distances: with a gate that is too wide, strangers would pull.
+    state = run(gate, state.values, n == 0 ? 0 : kRounds);
     std::vector<double> near = distances(state);
     std::erase_if(near, [&](double distance) { return !(distance <= gate); });
     if (near.empty()) return;
     const double next = std::clamp(kRobust * median_of(std::move(near)), narrowest, gate);
-    const bool is_settled = next > 0.99 * gate;
+    const bool is_settled = n > 0 && next > 0.99 * gate;
     gate = next;
     if (is_settled) return;
   }

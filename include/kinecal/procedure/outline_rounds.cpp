@@ -302,8 +302,8 @@ class OutlineFit {
     if (!of_losses) {
       narrow(
           gate_, kNarrowestGate, state,
-          [&](double gate, const Eigen::VectorXd& from) {
-            return rounds_.run({.gate = gate, .rounds = 4}, samples, from);
+          [&](double gate, const Eigen::VectorXd& from, int rounds) {
+            return rounds_.run({.gate = gate, .rounds = rounds}, samples, from);
           },
           [](const OutlineState& at) {
             std::vector<double> distances;

@@ -400,8 +400,8 @@ class SurfaceFit {
     if (!of_losses) {
       narrow(
           gate_, kNarrowest, state,
-          [&](double gate, const Eigen::VectorXd& from) {
-            return rounds_.run({.gate = gate, .rounds = 3}, samples, from);
+          [&](double gate, const Eigen::VectorXd& from, int rounds) {
+            return rounds_.run({.gate = gate, .rounds = rounds}, samples, from);
           },
           [](const RoundState& at) {
             std::vector<double> distances;
