@@ -111,6 +111,7 @@ struct CloudPlan {
   double noise = 0.0;                          ///< metres, along the line of sight
   bool background = false;                     ///< a wall behind the robot
   std::map<std::string, double> offsets = {};  ///< of joints: the truth less what is recorded
+  std::vector<Vector3<double>> shifts = {};    ///< of the links against their meshes, metres
   unsigned seed = 1;
 };
 
@@ -139,7 +140,10 @@ inline std::vector<Sample> mesh_robot_samples(const Robot& robot, const CloudPla
       sample.joint_positions.push_back(position);
       q[joint] = position + offset;
     }
-    const std::vector<Pose<double>> links = mesh_robot_poses(robot, q);
+    std::vector<Pose<double>> links = mesh_robot_poses(robot, q);
+    for (std::size_t l = 0; l < plan.shifts.size(); ++l) {
+      links[l].translation += links[l].rotation * plan.shifts[l];
+    }
     Observation seen{.sensor = "camera", .features = {}, .camera = CameraInfo{}};
     const double center = 0.5 * plan.pixels, focal = center / 0.45;
     seen.camera->width = seen.camera->height = plan.pixels;

@@ -212,9 +212,7 @@ namespace {
   }
   std::string note;
   if (!findings.assessments.empty()) {
-    const Assessment& last = findings.assessments.back();
-    note =
-        design_effect_note(last.uncertainty.design_effect, last.readings, last.neighbours.together);
+    note = design_effect_note(findings.assessments.back());
   }
   for (const Assessment& step : findings.assessments) {
     if (&step != &findings.assessments.back()) continue;

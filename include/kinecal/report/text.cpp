@@ -41,10 +41,18 @@ std::string reading_unit(const std::string& unit) {
   return unit == "m" ? "mm" : unit == "1" ? "-" : unit;
 }
 
-std::string design_effect_note(double effect, double readings, int alike) {
+std::string design_effect_note(const Assessment& of) {
+  const double effect = of.uncertainty.design_effect, readings = of.readings;
   if (effect <= 1.0) return "";
   constexpr double kRepeated = 1.2;
-  if (alike > 1) {
+  if (of.uncertainty.by_links) {
+    return fmt::format(
+        "  Features of one link err together, as if it were not quite its mesh: +- are {:.1f} "
+        "times as\n"
+        "  large as if they erred independently\n",
+        std::sqrt(effect));
+  }
+  if (const int alike = of.neighbours.together; alike > 1) {
     return fmt::format(
         "  Residuals of consecutive samples are alike, so {} poses count as one: +- are {:.1f} "
         "times as\n"

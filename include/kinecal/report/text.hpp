@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kinecal/solve/calibrate.hpp"
+#include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/uncertainty/observability.hpp"
 
 namespace kinecal {
@@ -39,10 +40,8 @@ class TextTable {
 /// The name of that unit; "-" for a residual without unit.
 [[nodiscard]] std::string reading_unit(const std::string& unit);
 
-/// The effect of a design effect on the +-; empty if it is one.
-/// @param readings  samples per pose
-/// @param alike     consecutive poses that count as one
-[[nodiscard]] std::string design_effect_note(double effect, double readings = 1.0, int alike = 1);
+/// What a design effect does to the +-; empty if it is one.
+[[nodiscard]] std::string design_effect_note(const Assessment& of);
 
 /// Two lines for each step: what it did and why it stopped.
 [[nodiscard]] std::string step_lines(const CalibrationResult& result);

@@ -57,53 +57,64 @@ class MaskSearcher {
   }
 
   [[nodiscard]] std::vector<CameraPose> search() const {
-    std::vector<CameraPose> all;
-    if (masks_.empty()) return all;
+    if (masks_.empty()) return {};
+    std::vector<CameraPose> poses;
     for (int i = 0; i < search_.rotations; ++i) {
       const Matrix3<double> turn = exp(grid_rotation(i, search_.rotations));
-      const auto [direction, middle] = shift_of(turn);
-      for (const double nearer : {0.8, 1.0, 1.25}) {
-        const Pose<double> pose{turn, nearer * direction - middle};
-        all.push_back({pose, roughly(pose)});
-      }
+      CameraPose& one = poses.emplace_back(CameraPose{{turn, shift_of(turn)}});
+      one.misfit = roughly(one.camera_T_parent);
+      shift(one, 1.0);
     }
-    const auto is_better = [](const CameraPose& a, const CameraPose& b) {
-      return a.misfit < b.misfit;
-    };
-    std::stable_sort(all.begin(), all.end(), is_better);
-    std::vector<CameraPose> refined;
-    for (const CameraPose& one : all) {
-      if (std::any_of(refined.begin(), refined.end(),
-                      [&](const CameraPose& other) { return turn_between(one, other) < 0.2; })) {
-        continue;
-      }
-      refined.push_back(one);
-      if (std::ssize(refined) == search_.refined) break;
+    poses = best_of(poses, search_.shifted, 0.0, 0.0);
+    for (CameraPose& one : poses) {
+      for (const double step : {0.5, 0.25}) shift(one, step);
     }
-    for (CameraPose& one : refined) refine(one, kFarOutside, 4);
-    std::stable_sort(refined.begin(), refined.end(), is_better);
-    refined.resize(std::min<std::size_t>(refined.size(), 10));
-    for (CameraPose& one : refined) refine(one, 0.3 * kFarOutside, 8);
-    std::stable_sort(refined.begin(), refined.end(), is_better);
-    std::vector<CameraPose> kept;
-    for (const CameraPose& one : refined) {
-      const auto is_same = [&](const CameraPose& other) {
-        constexpr double kShift = 0.05, kTurn = 0.1;
-        return turn_between(one, other) < kTurn && (one.camera_T_parent.inverse().translation -
-                                                    other.camera_T_parent.inverse().translation)
-                                                           .norm() < kShift;
-      };
-      if (std::any_of(kept.begin(), kept.end(), is_same)) continue;
-      kept.push_back(one);
-      if (std::ssize(kept) == search_.kept) break;
-    }
-    return kept;
+    constexpr double kFarTurn = 0.2, kTurn = 0.05, kShift = 0.03;
+    poses = best_of(poses, search_.refined, kFarTurn, 1e9);
+    poses = best_of(downhill(std::move(poses)), 2 * search_.kept, kTurn, kShift);
+    for (CameraPose& one : poses) refine(one, 0.3 * kFarOutside, 8);
+    return best_of(poses, search_.kept, kTurn, kShift);
   }
 
  private:
   [[nodiscard]] static double turn_between(const CameraPose& a, const CameraPose& b) {
     return log(Matrix3<double>(a.camera_T_parent.rotation.transpose() * b.camera_T_parent.rotation))
         .norm();
+  }
+
+  /// Lets poses go downhill, some at a time until one fits: there, misfits of right poses are a quarter of others'.
+  [[nodiscard]] std::vector<CameraPose> downhill(std::vector<CameraPose> poses) const {
+    constexpr std::size_t kAtATime = 20;
+    const double fits = 0.4 * static_cast<double>(masks_.size());
+    for (std::size_t i = 0, n = 0; i < poses.size(); i = n) {
+      bool is_found = false;
+      for (n = i; n < std::min(i + kAtATime, poses.size()); ++n) {
+        refine(poses[n], kFarOutside, 4);
+        is_found = is_found || poses[n].misfit < fits;
+      }
+      if (is_found) poses.resize(n);
+    }
+    return poses;
+  }
+
+  /// The best of some poses, the best first; of those that are closer together, the best.
+  /// @param turn   rad
+  /// @param shift  metres
+  [[nodiscard]] static std::vector<CameraPose> best_of(std::vector<CameraPose> poses, int count,
+                                                       double turn, double shift) {
+    std::ranges::stable_sort(poses, {}, &CameraPose::misfit);
+    std::vector<CameraPose> best;
+    for (const CameraPose& one : poses) {
+      const auto is_same = [&](const CameraPose& other) {
+        return turn_between(one, other) < turn && (one.camera_T_parent.inverse().translation -
+                                                   other.camera_T_parent.inverse().translation)
+                                                          .norm() < shift;
+      };
+      if (turn > 0.0 && std::ranges::any_of(best, is_same)) continue;
+      best.push_back(one);
+      if (std::ssize(best) == count) break;
+    }
+    return best;
   }
 
   /// Points of a link, evenly by area.
@@ -193,9 +204,9 @@ class MaskSearcher {
     masks_.push_back(std::move(mask));
   }
 
-  /// Where the middles of masks are, as far away as they should be, and the middles of robots: mean of the samples.
-  [[nodiscard]] std::pair<Vector3<double>, Vector3<double>> shift_of(
-      const Matrix3<double>& turn) const {
+  /// A translation that puts the middles of robots where those of masks are, as far away as their spreads say: mean of
+  /// the samples.
+  [[nodiscard]] Vector3<double> shift_of(const Matrix3<double>& turn) const {
     Vector3<double> ahead = Vector3<double>::Zero(), middle = ahead;
     for (const SearchedMask& mask : masks_) {
       Vector3<double> mean = Vector3<double>::Zero();
@@ -213,11 +224,37 @@ class MaskSearcher {
       ahead += focal_ * spread / mask.spread * Vector3<double>(direction.x(), direction.y(), 1.0);
       middle += mean;
     }
-    const auto count = static_cast<double>(masks_.size());
-    return {ahead / count, middle / count};
+    return (ahead - middle) / static_cast<double>(masks_.size());
   }
 
-  /// Shares of robots outside of their masks and of masks without their robots.
+  /// Moves the robot across the line of sight and along it while that helps: a mask is cut by the border of its image
+  /// and by what stands before the robot, so its middle is not the robot's.
+  /// @param step  of kSideways and kAlong
+  void shift(CameraPose& one, double step) const {
+    constexpr int kPasses = 4;
+    constexpr double kSideways = 20.0;  // pixels
+    constexpr double kAlong = 0.3;      // of the distance
+    for (int pass = 0; pass < kPasses; ++pass) {
+      const double before = one.misfit;
+      const Vector3<double> pivot = pivot_of(one.camera_T_parent);
+      const double sideways = step * kSideways / focal_ * pivot.z();
+      for (const double sign : {-1.0, 1.0}) {
+        for (const Vector3<double>& way :
+             {Vector3<double>(sign * sideways, 0.0, 0.0),
+              Vector3<double>(0.0, sign * sideways, 0.0),
+              Vector3<double>(pivot * (std::exp(sign * step * kAlong) - 1.0))}) {
+          CameraPose next = one;
+          next.camera_T_parent.translation += way;
+          next.misfit = roughly(next.camera_T_parent);
+          if (next.misfit < one.misfit) one = next;
+        }
+      }
+      if (!(one.misfit < before)) break;
+    }
+  }
+
+  /// Shares of robots outside of their masks and of masks without their robots.  Nothing is known of what the image
+  /// does not show.
   [[nodiscard]] double roughly(const Pose<double>& camera_T_parent) const {
     double misfit = 0.0;
     for (const SearchedMask& mask : masks_) {
@@ -225,16 +262,10 @@ class MaskSearcher {
       double outside = 0.0;
       for (const Vector3<double>& p : mask.points) {
         const Vector3<double> q = camera_T_parent * p;
-        if (q.z() <= 0.05) {
-          outside += 1.0;
-          continue;
-        }
+        if (q.z() <= 0.05) continue;
         const int u = static_cast<int>(std::floor((focal_ * q.x() / q.z() + offset_.x()) / kStep)),
                   v = static_cast<int>(std::floor((focal_ * q.y() / q.z() + offset_.y()) / kStep));
-        if (!mask.outside.contains(u, v)) {
-          outside += 1.0;
-          continue;
-        }
+        if (!mask.outside.contains(u, v)) continue;
         covered(u, v) = 1;
         outside += std::clamp(mask.outside(u, v) / kFarOutside, 0.0, 1.0);
       }

@@ -2,7 +2,8 @@
 //
 // 1. Rotations from an even grid; the spread of the robot across the line of sight and that of its mask give the distance,
 //    their middles the direction.
-// 2. A pose is judged by points of the robot that are outside of the masks, and by parts of the masks without the robot.
+// 2. A pose is judged by points of the robot that are outside of the masks, and by parts of the masks without the robot;
+//    it is shifted while that helps.
 // 3. The best go downhill on coarse outlines, both ways; those that end apart are returned, the best first.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -23,10 +24,11 @@ struct PosedMask {
 
 /// How such a search goes.
 struct MaskSearch {
-  int rotations = 3000;  ///< of the grid
+  int rotations = 1000;  ///< of the grid
   int samples = 6;       ///< at most
-  int refined = 60;      ///< poses that go downhill
-  int kept = 4;          ///< poses that are returned
+  int shifted = 200;     ///< of these, that are shifted by finer steps
+  int refined = 100;     ///< of these, that go downhill, at most
+  int kept = 4;          ///< of these, that are returned
 };
 
 /// Poses of a camera that sees these masks, the best first.

@@ -111,13 +111,13 @@ namespace {
 /// @param inverse  (coordinates x coordinates) of the information
 void set_uncertainty(const AnyProblem& problem, const FreeSet& free, ParameterValues values,
                      const LinearFit& fit, const Eigen::MatrixXd& inverse, const PoseGroups& poses,
-                     Assessment& found) {
+                     const FeatureLinks& links, Assessment& found) {
   const Eigen::MatrixXd& basis = fit.coordinates.basis;
   const Eigen::MatrixXd of_free = basis * inverse * basis.transpose();
   const bool robust = (fit.loss.array() != 1.0).any();
   const double variance = robust ? 1.0 : prior_variance(found.noise);
   const auto with_priors = [&](const Eigen::MatrixXd& of_priors) {
-    found.uncertainty = uncertainty(problem, fit, found.noise, poses, of_priors);
+    found.uncertainty = uncertainty(problem, fit, found.noise, poses, links, of_priors);
     mark_undetermined(problem, free, fit.coordinates, found.uncertainty);
   };
   with_priors(variance * fit.prior_hessian);
@@ -194,7 +194,8 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   set_repeats(fit, single, found.noise);
   const Eigen::MatrixXd effects = detail::joint_effects(problem, values, samples, inside, fit);
   found.common = common_noise(fit, effects, single, found.noise);
-  detail::set_uncertainty(problem, inside, values, fit, inverse, poses, found);
+  detail::set_uncertainty(problem, inside, values, fit, inverse, poses,
+                          feature_links(problem, fit, samples), found);
   found.held_out = detail::held_out_of(*evaluator, values, fit, samples, poses, options);
   found.captures = capture_errors(problem, fit, single);
   detail::keep_what_foretells(*evaluator, values, fit, samples, poses, options, found);

@@ -173,16 +173,39 @@ double error_of(const Cameras& found, const TrueCamera& truth,
   return error;
 }
 
-/// Within 2 % of the smallest error held out in 95 of 100 cameras; what is good images as the true camera does.
+/// The same as the report expects it: root of the mean square of the +- of pixels where the points are seen.
+double expected_error(const ProjectionMap& map, const TrueCamera& truth,
+                      const std::vector<Vector3<double>>& points) {
+  const Lens was(truth.info, ImageKind::raw);
+  double sum = 0.0;
+  int seen = 0;
+  for (const Vector3<double>& point : points) {
+    const Eigen::Vector2d pixel = was.project(point);
+    const KnownPixel* cell = map.at(pixel.x(), pixel.y());
+    if (cell == nullptr || cell->features == 0) continue;
+    sum += cell->deviation() * cell->deviation();
+    ++seen;
+  }
+  return std::sqrt(sum / seen);
+}
+
+/// Within 2 % of the smallest error held out in 95 of 100 cameras; what is good images as the true camera does, as far
+/// as its +- of a pixel says.
 TEST(FindLenses, ImagesAsWellAsAnyOther) {
   const int cameras = test::repetitions_of_study(500, test::kIsSlow ? 2 : 10);
   int near = 0, solved = 0, good = 0, wrong = 0;
   double worst = 0.0;
+  std::vector<double> ratios;  // of the error to what the report expects, of those that are good
   const auto print = [&] {
+    std::ranges::sort(ratios);
+    const auto quantile = [&](double part) {
+      return ratios.empty() ? 0.0 : ratios[std::size_t(part * double(ratios.size() - 1))];
+    };
     std::printf(
         "%d cameras of 25 to 190 degrees, 8 to 100 views: %d within 2 %% of the smallest error "
-        "held out, %d good, of which %d image a feature more than 1 px off (the worst %.2f px)\n",
-        solved, near, good, wrong, worst);
+        "held out, %d good, of which %d image a feature more than 1 px off (the worst %.2f px); "
+        "error to its +-: median %.2f, 9 in 10 %.2f, worst %.2f\n",
+        solved, near, good, wrong, worst, quantile(0.5), quantile(0.9), quantile(1.0));
     std::fflush(stdout);
   };
   for (int n = 0; n < cameras; ++n) {
@@ -204,6 +227,11 @@ TEST(FindLenses, ImagesAsWellAsAnyOther) {
     const ProjectionMap& map = judged.assessments.back().maps.front();
     EXPECT_TRUE(map.is_known()) << n;
     const double error = error_of(found, truth, points);
+    ratios.push_back(error / expected_error(map, truth, points));
+    if (ratios.back() > 2.0) {
+      std::printf("camera %d: %.3f px off, %.1f times the +-: %s\n", n, error, ratios.back(),
+                  found.diagnostics.notes.front().c_str());
+    }
     worst = std::max(worst, error);
     if (error > 0.5) std::printf("camera %d: %.2f px\n", n, error);
     wrong += error > 1.0 ? 1 : 0;

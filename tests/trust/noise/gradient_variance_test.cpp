@@ -17,7 +17,7 @@ namespace {
 double effect_in(test::NoisyScene& scene) {
   const auto evaluator = scene.solved().evaluator(scene.free());
   const LinearFit fit = scene.linear(*evaluator);
-  return gradient_variance(scene.solved(), fit, each_its_own(scene.samples.size()),
+  return gradient_variance(scene.solved(), fit, each_its_own(scene.samples.size()), {},
                            information(fit, fit.loss), fit.prior_hessian)
       .effect;
 }

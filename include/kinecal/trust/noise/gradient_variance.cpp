@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -99,46 +102,144 @@ struct GradientSums {
   return weight * target + (1.0 - weight) * scatter;
 }
 
-}  // namespace
-}  // namespace detail
+/// Rows of a block, feature after feature.
+struct RowPiece {
+  std::size_t block = 0;
+  Eigen::Index first = 0, size = 0;
+};
 
-GradientVariance gradient_variance(const AnyProblem& problem, const LinearFit& fit,
-                                   const PoseGroups& poses, const Eigen::MatrixXd& independent,
-                                   const Eigen::MatrixXd& of_priors) {
-  const Eigen::Index n = fit.size();
-  const detail::Spectrum spectrum(information(fit, fit.loss));
-  const Eigen::Index rank = n - spectrum.null;
-  if (rank == 0) return {independent};
-  const Eigen::MatrixXd whitening = spectrum.scale.cwiseInverse().asDiagonal() *
-                                    spectrum.vectors.rightCols(rank) *
-                                    spectrum.singular.tail(rank).cwiseInverse().asDiagonal();
-  detail::GradientSums sums(fit.coordinates.basis * whitening);
-  double directions = 0.0;
-  for (const std::vector<std::size_t>& of_pose : detail::blocks_by_pose(fit, poses)) {
-    for (const std::size_t b : of_pose) {
-      const RowBlock& block = fit.blocks[b];
-      const Eigen::MatrixXd rows = fit.jacobian.middleRows(block.first, block.size) * whitening;
-      const Eigen::VectorXd loss = fit.loss.segment(block.first, block.size);
-      directions += (loss.asDiagonal() * rows).cwiseProduct(rows).sum();
-      sums.add(rows, fit.residual.segment(block.first, block.size), loss,
-               problem.term(block.term).feature_size);
-    }
-    if (!of_pose.empty()) sums.end_group();
+using RowGroups = std::vector<std::vector<RowPiece>>;
+
+[[nodiscard]] RowPiece piece_of(const LinearFit& fit, std::size_t block) {
+  return {block, fit.blocks[block].first, fit.blocks[block].size};
+}
+
+[[nodiscard]] RowGroups groups_by_pose(const LinearFit& fit, const PoseGroups& poses) {
+  RowGroups groups;
+  for (const std::vector<std::size_t>& of_pose : blocks_by_pose(fit, poses)) {
+    std::vector<RowPiece>& group = groups.emplace_back();
+    for (const std::size_t b : of_pose) group.push_back(piece_of(fit, b));
   }
-  if (sums.groups.empty()) return {independent};
-  const double count = static_cast<double>(fit.residual.size());
-  const double of_features =
-      sums.of_features * count / std::max(1.0, count - static_cast<double>(rank));
-  if (!(of_features > 0.0)) return {independent};
+  return groups;
+}
+
+/// Each link is a group; what is on none is grouped by pose.
+[[nodiscard]] RowGroups groups_by_link(const LinearFit& fit, const PoseGroups& poses,
+                                       const FeatureLinks& links) {
+  RowGroups groups(static_cast<std::size_t>(links.count + poses.count));
+  for (std::size_t b = 0; b < fit.blocks.size(); ++b) {
+    const RowBlock& block = fit.blocks[b];
+    const std::vector<int>& on = links.of_blocks[b];
+    if (on.empty()) {
+      const int pose = poses.of_sample[static_cast<std::size_t>(block.sample)];
+      groups[static_cast<std::size_t>(links.count + pose)].push_back(piece_of(fit, b));
+      continue;
+    }
+    const Eigen::Index size = block.size / std::ssize(on);
+    for (std::size_t i = 0, end = 0; i < on.size(); i = end) {
+      while (end < on.size() && on[end] == on[i]) ++end;
+      groups[static_cast<std::size_t>(on[i])].push_back(
+          {b, block.first + static_cast<Eigen::Index>(i) * size,
+           static_cast<Eigen::Index>(end - i) * size});
+    }
+  }
+  return groups;
+}
+
+/// What variances of grouped gradients are made of.
+struct WhitenedFit {
+  const AnyProblem& problem;
+  const LinearFit& fit;
+  Eigen::MatrixXd whitening;  ///< (coordinates x rank)
+  Eigen::MatrixXd back;       ///< (coordinates x rank) its inverse, transposed
+};
+
+/// @param independent  without the share of priors
+[[nodiscard]] std::optional<GradientVariance> variance_of(const WhitenedFit& of,
+                                                          const RowGroups& groups,
+                                                          const Eigen::MatrixXd& independent) {
+  const LinearFit& fit = of.fit;
+  GradientSums sums(fit.coordinates.basis * of.whitening);
+  double directions = 0.0;
+  for (const std::vector<RowPiece>& group : groups) {
+    for (const RowPiece& piece : group) {
+      const Eigen::MatrixXd rows = fit.jacobian.middleRows(piece.first, piece.size) * of.whitening;
+      const Eigen::VectorXd loss = fit.loss.segment(piece.first, piece.size);
+      directions += (loss.asDiagonal() * rows).cwiseProduct(rows).sum();
+      sums.add(rows, fit.residual.segment(piece.first, piece.size), loss,
+               of.problem.term(fit.blocks[piece.block].term).feature_size);
+    }
+    if (!group.empty()) sums.end_group();
+  }
+  if (sums.groups.empty()) return std::nullopt;
+  const auto count = static_cast<double>(fit.residual.size()),
+             rank = static_cast<double>(of.whitening.cols());
+  const double of_features = sums.of_features * count / std::max(1.0, count - rank);
+  if (!(of_features > 0.0)) return std::nullopt;
   double of_groups = 0.0;
   for (const Eigen::VectorXd& x : sums.groups) of_groups += x.squaredNorm();
   double effect = of_groups / of_features;
   const double chance = std::sqrt(sums.chance) / directions;
   if (effect <= 1.0 + 3.0 * chance) effect = 1.0;
-  const Eigen::MatrixXd back = spectrum.scale.asDiagonal() * spectrum.vectors.rightCols(rank) *
-                               spectrum.singular.tail(rank).asDiagonal();
-  const Eigen::MatrixXd of_rows = whitening.transpose() * (independent - of_priors) * whitening;
-  return {back * detail::shrunk(sums, effect * of_rows) * back.transpose() + of_priors, effect};
+  const Eigen::MatrixXd of_rows = of.whitening.transpose() * independent * of.whitening;
+  return GradientVariance{of.back * shrunk(sums, effect * of_rows) * of.back.transpose(), effect};
+}
+
+}  // namespace
+}  // namespace detail
+
+FeatureLinks feature_links(const AnyProblem& problem, const LinearFit& fit,
+                           std::span<const Sample> samples) {
+  FeatureLinks links;
+  links.of_blocks.resize(fit.blocks.size());
+  std::map<std::string, int> numbers;
+  for (std::size_t b = 0; b < fit.blocks.size(); ++b) {
+    const RowBlock& block = fit.blocks[b];
+    const Term& term = problem.term(block.term);
+    for (const int number : term.sensors) {
+      const Mount& mount = problem.sensors()[static_cast<std::size_t>(number)].mount();
+      if (mount.links.empty()) continue;
+      const Observation* seen =
+          samples[static_cast<std::size_t>(block.sample)].observation(mount.name);
+      if (seen == nullptr || std::ssize(seen->features) * term.feature_size != block.size) continue;
+      std::vector<int>& on = links.of_blocks[b];
+      for (const Feature& feature : seen->features) {
+        on.push_back(numbers.emplace(feature.frame, std::ssize(numbers)).first->second);
+      }
+      break;
+    }
+  }
+  links.count = static_cast<int>(numbers.size());
+  return links;
+}
+
+GradientVariance gradient_variance(const AnyProblem& problem, const LinearFit& fit,
+                                   const PoseGroups& poses, const FeatureLinks& links,
+                                   const Eigen::MatrixXd& independent,
+                                   const Eigen::MatrixXd& of_priors) {
+  const Eigen::Index n = fit.size();
+  const detail::Spectrum spectrum(information(fit, fit.loss));
+  const Eigen::Index rank = n - spectrum.null;
+  if (rank == 0) return {independent};
+  const auto vectors = spectrum.vectors.rightCols(rank);
+  const auto singular = spectrum.singular.tail(rank);
+  const detail::WhitenedFit whitened{
+      problem, fit,
+      spectrum.scale.cwiseInverse().asDiagonal() * vectors * singular.cwiseInverse().asDiagonal(),
+      spectrum.scale.asDiagonal() * vectors * singular.asDiagonal()};
+  const Eigen::MatrixXd of_rows = independent - of_priors;
+  auto found = detail::variance_of(whitened, detail::groups_by_pose(fit, poses), of_rows);
+  if (!found) return {independent};
+  if (links.count > 1) {
+    const auto by_links =
+        detail::variance_of(whitened, detail::groups_by_link(fit, poses, links), of_rows);
+    if (by_links && by_links->effect > found->effect) {
+      found = by_links;
+      found->by_links = true;
+    }
+  }
+  found->variance += of_priors;
+  return *found;
 }
 
 }  // namespace kinecal

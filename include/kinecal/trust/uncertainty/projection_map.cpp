@@ -528,7 +528,8 @@ std::vector<ProjectionMap> projection_maps(const AnyProblem& problem, const Free
   const std::vector<BlockNoise> noise = estimate_noise(problem, fit, inverse);
   const PoseGroups poses = pose_groups(problem, samples);
   const Uncertainty known =
-      uncertainty(problem, fit, noise, poses, prior_variance(noise) * fit.prior_hessian);
+      uncertainty(problem, fit, noise, poses, feature_links(problem, fit, samples),
+                  prior_variance(noise) * fit.prior_hessian);
   return projection_maps({*evaluator, free, values, fit, known, samples, poses});
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "kinecal/trust/noise/gradient_variance.hpp"
 #include "kinecal/trust/uncertainty/loss_curvature.ipp"
 #include "kinecal/trust/uncertainty/observability.hpp"
 #include "kinecal/trust/uncertainty/weak_parameters.hpp"
@@ -85,7 +84,7 @@ void mark_undetermined(const AnyProblem& problem, const FreeSet& free, const Coo
 
 Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
                         const std::vector<BlockNoise>& noise, const PoseGroups& poses,
-                        const Eigen::MatrixXd& of_priors) {
+                        const FeatureLinks& links, const Eigen::MatrixXd& of_priors) {
   const bool robust = (fit.loss.array() != 1.0).any();
   Eigen::MatrixXd hessian, middle;
   if (robust) {
@@ -99,11 +98,11 @@ Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
   middle += of_priors;
   const Eigen::MatrixXd inverse = detail::Spectrum(hessian).pseudo_inverse();
   const Coordinates& by = fit.coordinates;
-  const GradientVariance grouped = gradient_variance(problem, fit, poses, middle, of_priors);
+  const GradientVariance grouped = gradient_variance(problem, fit, poses, links, middle, of_priors);
   const Eigen::MatrixXd coordinates = inverse * grouped.variance * inverse;
   const Eigen::MatrixXd covariance = by.basis * coordinates * by.basis.transpose();
   return {static_cast<int>(coordinates.rows()), covariance, detail::deviations(covariance, by.lost),
-          grouped.effect};
+          grouped.effect, grouped.by_links};
 }
 
 std::vector<Correlation> high_correlations(const Uncertainty& known, double limit) {

@@ -14,6 +14,7 @@
 
 #include <vector>
 
+#include "kinecal/trust/noise/gradient_variance.hpp"
 #include "kinecal/trust/noise/noise.hpp"
 #include "kinecal/trust/noise/pose_groups.hpp"
 #include "kinecal/trust/plain_matrix.hpp"
@@ -30,15 +31,17 @@ struct Uncertainty {
   /// Factor of the covariance as features of a pose err together, in the mean of all parameters: see
   /// gradient_variance().
   double design_effect = 1.0;
+  bool by_links = false;  ///< features of a link err together, more than those of a pose
 };
 
 /// Covariance of the free parameters.
 /// @param noise      of each error block: see estimate_noise()
 /// @param poses      of the problem's samples
+/// @param links      on which their features lie
 /// @param of_priors  (coordinates x coordinates) variance of the gradients of priors
 [[nodiscard]] Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
                                       const std::vector<BlockNoise>& noise, const PoseGroups& poses,
-                                      const Eigen::MatrixXd& of_priors);
+                                      const FeatureLinks& links, const Eigen::MatrixXd& of_priors);
 
 namespace detail {
 /// Standard deviations from a covariance; infinite if more than a little of a parameter is
