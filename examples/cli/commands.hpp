@@ -181,12 +181,13 @@ struct CameraOptions {
 int camera(const CameraOptions& options);
 
 struct RecheckOptions {
-  std::string result;                ///< folder that calibrate wrote
-  std::vector<std::string> samples;  ///< new ones
-  std::vector<std::string> cameras;  ///< NAME=FILE
-  std::optional<Recorded> recorded;  ///< before or after the result was installed
-  std::string report;                ///< JSON is written there
-  double level = 0.01;               ///< of verify: share of false alarms
+  std::string result;                   ///< folder that calibrate wrote
+  std::vector<std::string> samples;     ///< new ones
+  std::vector<std::string> cameras;     ///< NAME=FILE
+  std::optional<Recorded> recorded;     ///< before or after the result was installed
+  std::vector<std::string> mesh_paths;  ///< of verify: where the URDF's packages may be
+  std::string report;                   ///< JSON is written there
+  double level = 0.01;                  ///< of verify: share of false alarms
   double fail_above =
       0.0;  ///< of evaluate: exit code 2 beyond that times the held-out error; 0: never
   Manner manner = {};

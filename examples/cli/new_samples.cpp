@@ -180,6 +180,21 @@ const FittedBlock& fitted_block(const StoredResult& result, const std::string& n
 
 }  // namespace
 
+std::vector<Sample> read_new_recordings(const NewSampleOptions& options, Diagnostics& diagnostics) {
+  std::vector<Sample> samples = read_recordings(options.samples, diagnostics).samples;
+  for (const std::string& camera : options.cameras) {
+    try {
+      set_camera(samples, camera, diagnostics);
+    } catch (const InputError& e) {
+      diagnostics.errors.emplace_back(e.what());
+    }
+  }
+  if (samples.empty() && diagnostics.errors.empty()) {
+    diagnostics.error({options.samples.front(), 0}, "has no samples");
+  }
+  return samples;
+}
+
 NewSamples read_new_samples(const StoredResult& result, const NewSampleOptions& options) {
   if (!result.config.per_sample.empty()) {
     throw InputError(
@@ -189,19 +204,8 @@ NewSamples read_new_samples(const StoredResult& result, const NewSampleOptions& 
                     result.folder, result.config.per_sample.front().name));
   }
   NewSamples fresh;
-  fresh.samples = read_recordings(options.samples, fresh.diagnostics).samples;
-  for (const std::string& camera : options.cameras) {
-    try {
-      set_camera(fresh.samples, camera, fresh.diagnostics);
-    } catch (const InputError& e) {
-      fresh.diagnostics.errors.emplace_back(e.what());
-    }
-  }
+  fresh.samples = read_new_recordings(options, fresh.diagnostics);
   if (!fresh.diagnostics.errors.empty()) return fresh;
-  if (fresh.samples.empty()) {
-    fresh.diagnostics.error({options.samples.front(), 0}, "has no samples");
-    return fresh;
-  }
   doubt(result, fresh.samples, detail::used_joints(result.config, result.robot, fresh.samples),
         fresh.diagnostics);
   if (!fresh.diagnostics.errors.empty()) return fresh;

@@ -35,7 +35,10 @@ struct NewSampleOptions {
   double level = 0.01;  ///< share of false alarms
 };
 
-/// Reads new samples of any format, and doubts them.
+/// Reads new samples of any format; an error if there are none.
+[[nodiscard]] std::vector<Sample> read_new_recordings(const NewSampleOptions& options,
+                                                      Diagnostics& diagnostics);
+/// The same, held against a result, and doubted.
 [[nodiscard]] NewSamples read_new_samples(const StoredResult& result,
                                           const NewSampleOptions& options);
 

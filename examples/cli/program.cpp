@@ -914,6 +914,7 @@ void add_evaluate(CLI::App& command, RecheckOptions& options) {
 
 void add_verify(CLI::App& command, RecheckOptions& options) {
   add_recheck(command, options);
+  add_mesh_path(command, options.mesh_paths);
   command
       .add_option("--level", options.level,
                   "false alarm rate: how often a valid result may be rejected")

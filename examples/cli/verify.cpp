@@ -4,14 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/files/results/file_set.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
+#include "kinecal/procedure/surface_rounds.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/trust/verify/pose_change.hpp"
+#include "kinecal/trust/verify/solution_change.hpp"
 #include "new_samples.hpp"
 #include "output_file.hpp"
 #include "terminal.hpp"
@@ -317,11 +322,153 @@ std::string json(const Check& check) {
                              {"error_blocks", fit_json(check.result, check.fresh)}});
 }
 
+// Results of the robot's own surface.  Nearest points are others at other values, so residuals do not say what has moved:
+// new samples are calibrated alone, and the two solutions compared.
+
+/// The calibration of the new samples.
+struct SecondSolution {
+  const StoredResult& result;
+  CalibratedRobot calibrated;
+  SolutionChange change;
+  double level;
+
+  [[nodiscard]] bool holds() const { return change.probability >= level; }
+  [[nodiscard]] const AnyProblem& problem() const {
+    return *calibrated.setup.calibration.steps.back().problem;
+  }
+};
+
+/// nullopt: wrong input, which is printed.
+std::optional<CalibratedRobot> calibrated_alone(const StoredResult& result,
+                                                const RecheckOptions& options) {
+  Diagnostics found;
+  CalibrationSetup setup{.robot = result.robot,
+                         .config = result.config,
+                         .samples = read_new_recordings({options.samples, options.cameras}, found),
+                         .urdf_text = result.urdf_text,
+                         .urdf = result.urdf_then};
+  if (!std::filesystem::exists(setup.urdf)) setup.urdf = result.urdf;
+  if (options.recorded == Recorded::after) add_rising(result.added_offsets, setup.samples, -1.0);
+  CalibrationOptions calibrating;
+  calibrating.mesh_paths = options.mesh_paths;
+  calibrating.search = Search::never;
+  PreparedCalibration prepared = prepare(std::move(setup), calibrating, std::move(found));
+  print(prepared.diagnostics);
+  if (!prepared.diagnostics.errors.empty()) return std::nullopt;
+  return calibrate_robot(std::move(prepared), calibrating);
+}
+
+/// The change of a joint, frame or sensor, as of a mover.
+std::string line_of(const SecondSolution& second, const OwnerChange& owner) {
+  const AnyProblem& problem = second.problem();
+  const bool is_frame = problem.frames().contains(owner.owner);
+  std::string text;
+  for (const char* unit : {"m", "rad", ""}) {
+    std::vector<std::pair<double, double>> changes;
+    for (std::size_t i = 0; i < owner.parameters.size(); ++i) {
+      const Parameter& parameter = problem.table()[owner.parameters[i]];
+      if (is_frame && parameter.unit == unit) {
+        changes.emplace_back(owner.change[i], owner.deviation[i]);
+      } else if (!is_frame && *unit == '\0') {
+        text += fmt::format("{}{} {} +- {}", text.empty() ? "" : ", ", parameter.name,
+                            reading(owner.change[i], parameter.unit),
+                            reading(owner.deviation[i], parameter.unit));
+      }
+    }
+    if (!changes.empty()) text += (text.empty() ? "" : ", ") + length_text(changes, unit);
+  }
+  return fmt::format("  - '{}' by {} (p = {:.2g})\n", owner.owner, text, owner.probability);
+}
+
+std::string text_of(const SecondSolution& second) {
+  const SolutionChange& change = second.change;
+  std::string text = fmt::format(
+      "verdict: {}\n  - {} calibrated alone differ from the result by {:.2f} times what "
+      "the +- of both make (p = {:.2g})\n",
+      second.holds() ? "holds" : "does not hold",
+      counted(second.calibrated.samples.size(), "new sample"),
+      std::sqrt(change.statistic / change.freedom), change.probability);
+  if (second.calibrated.samples.size() < kEnough) {
+    text += fmt::format("  - only {}; {} or more in different poses show more\n",
+                        counted(second.calibrated.samples.size(), "sample"), kEnough);
+  }
+  text += "\nChanges of what was calibrated, the least likely first\n";
+  for (const OwnerChange& owner : change.owners) text += line_of(second, owner);
+  if (second.result.pose) {
+    const std::vector<double> then = second.result.values_of(second.problem().table());
+    const Eigen::VectorXd now = second.calibrated.result.table.values();
+    const PoseChange pose =
+        pose_change({second.problem(), then}, {second.problem(), now}, second.calibrated.samples,
+                    second.result.pose->frame, second.result.pose->in);
+    if (pose.poses > 0) {
+      text += fmt::format("\n'{}' in '{}' is {} and {} from the result\n",
+                          second.result.pose->frame.name(), second.result.pose->in.name(),
+                          reading(pose.position, "m"), reading(pose.rotation, "rad"));
+    }
+  }
+  return text + (second.holds() ? "\nNext: nothing to do\n"
+                                : fmt::format("\nNext: see whether '{}' is loose, then calibrate "
+                                              "again\n",
+                                              change.owners.front().owner));
+}
+
+std::string json(const SecondSolution& second) {
+  using detail::Json;
+  Json moved = Json::array();
+  for (const OwnerChange& owner : second.change.owners) {
+    Json parameters = Json::array();
+    for (std::size_t i = 0; i < owner.parameters.size(); ++i) {
+      parameters.push_back({{"name", second.problem().table()[owner.parameters[i]].name},
+                            {"change", owner.change[i]},
+                            {"sigma", owner.deviation[i]}});
+    }
+    moved.push_back({{"owner", owner.owner},
+                     {"statistic", owner.statistic},
+                     {"probability", owner.probability},
+                     {"parameters", parameters}});
+  }
+  return detail::json_lines({{"result", second.result.folder},
+                             {"holds", second.holds()},
+                             {"probability", second.change.probability},
+                             {"level", second.level},
+                             {"statistic", second.change.statistic},
+                             {"freedom", second.change.freedom},
+                             {"samples", second.calibrated.samples.size()},
+                             {"moved", moved}});
+}
+
+int verify_on_surface(const StoredResult& result, const RecheckOptions& options) {
+  std::optional<CalibratedRobot> solved = calibrated_alone(result, options);
+  if (!solved) return kBadInput;
+  SecondSolution second{result, *std::move(solved), {}, options.level};
+  const CalibratedRobot& alone = second.calibrated;
+  if (!alone.is_usable() || alone.assessments.empty()) {
+    say("verdict: not known\n  - the new samples alone: {}\nNext: verify with other poses, or "
+        "more\n",
+        alone.judgement.reasons.empty() ? "do not use" : alone.judgement.reasons.front());
+    return kNotUsable;
+  }
+  const ParameterTable& table = second.problem().table();
+  const Eigen::VectorXd values = alone.result.table.values();
+  second.change = solution_change(
+      second.problem(), result.state(table), calibrated_state(alone.assessments.back(), values),
+      static_cast<double>(result.pose_samples().size() + alone.samples.size()) - 2.0);
+  if (second.change.freedom == 0) {
+    throw InputError(result.folder +
+                     ": nothing that was calibrated is determined by both the "
+                     "result and the new samples");
+  }
+  show(text_of(second), options.manner);
+  if (!options.report.empty()) write_output(options.report, json(second));
+  return second.holds() ? kDone : kNotUsable;
+}
+
 }  // namespace
 
 int verify(const RecheckOptions& options) {
   const StoredResult result = read_result(options.result);
   if (!options.report.empty()) check_json(options.report, options.samples);
+  if (compares_surface(result.config)) return verify_on_surface(result, options);
   const NewSamples fresh =
       read_new_samples(result, {options.samples, options.cameras, options.recorded, options.level});
   print(fresh.diagnostics);

@@ -52,3 +52,4 @@
 #include "kinecal/trust/uncertainty/workspace_map.hpp"
 #include "kinecal/trust/verify/drift.hpp"
 #include "kinecal/trust/verify/pose_change.hpp"
+#include "kinecal/trust/verify/solution_change.hpp"

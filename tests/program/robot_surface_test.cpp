@@ -42,6 +42,31 @@ TEST_F(RobotSurfaceProgram, CalibratesByClouds) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out/calibrated.urdf"));
 }
 
+TEST_F(RobotSurfaceProgram, VerifiesByNewClouds) {
+  const Outcome result = calibrate(test::mesh_robot_samples(robot_, {.samples = 6, .noise = 0.001}),
+                                   test::mesh_config(""));
+  ASSERT_EQ(result.code, 0) << result.err;
+  std::vector<Sample> later =
+      test::mesh_robot_samples(robot_, {.samples = 6, .noise = 0.001, .seed = 7});
+  const auto verify = [&] {
+    std::ofstream file(folder_ / "later.yaml");
+    write_samples(file, later);
+    file.close();
+    return kinecal("verify out later.yaml --report verify.json");
+  };
+  const Outcome same = verify();
+  EXPECT_EQ(same.code, 0) << same.out << same.err;
+  EXPECT_THAT(same.out, HasSubstr("verdict: holds"));
+  for (Sample& sample : later) {  // the camera was knocked: 8 mm to its right
+    for (Feature& point : sample.observations.at(0).features) point.point.x() -= 0.008;
+  }
+  const Outcome knocked = verify();
+  EXPECT_EQ(knocked.code, 2) << knocked.out << knocked.err;
+  EXPECT_THAT(knocked.out, HasSubstr("verdict: does not hold"));
+  EXPECT_THAT(knocked.out, testing::ContainsRegex("'camera_joint' by [78]\\.[0-9]+ mm \\+- 0\\."));
+  EXPECT_THAT(knocked.out, HasSubstr("see whether 'camera_joint' is loose"));
+}
+
 TEST_F(RobotSurfaceProgram, CalibratesByMasks) {
   std::string config = test::mesh_config("");
   for (const auto& [what, with] : {std::pair<std::string, std::string>("camera3d", "camera2d"),

@@ -206,6 +206,10 @@ void read_calibration(const std::string& content, const std::string& values_file
   read_poses(report, result);
   read_images(report, result.config);
   read_cameras(report, result);
+  if (!report.find("inputs")) return;  // of a result that no program wrote
+  for (const JsonValue& input : report.list("inputs")) {
+    if (input.text("role") == "URDF") result.urdf_then = input.text("name");
+  }
 }
 
 }  // namespace

@@ -40,13 +40,14 @@ struct StoredNumber {
 
 /// A result and what it was calibrated with.
 struct StoredResult {
-  std::string folder;                           ///< as the user gave it
-  std::string report;                           ///< path of report.json, for messages
-  std::string verdict;                          ///< "good" or "use with care"
-  Robot robot;                                  ///< of the original URDF
-  std::string urdf_text;                        ///< the original URDF
-  std::string urdf;                             ///< its path
-  Config config;                                ///< with which it was calibrated
+  std::string folder;     ///< as the user gave it
+  std::string report;     ///< path of report.json, for messages
+  std::string verdict;    ///< "good" or "use with care"
+  Robot robot;            ///< of the original URDF
+  std::string urdf_text;  ///< the original URDF
+  std::string urdf;       ///< its path
+  std::string urdf_then;  ///< its path when it was calibrated, as the user gave it; may be empty
+  Config config;          ///< with which it was calibrated
   std::map<std::string, double> values;         ///< of calibration.yaml
   std::vector<std::string> parameters;          ///< those that were free
   std::vector<std::vector<double>> covariance;  ///< of them: rows of the lower triangle
