@@ -109,6 +109,18 @@ TEST_F(SurfaceRoundsOfAnArm, NeedNoStart) {
   }
 }
 
+/// All links are a box now, turned with the first joint only: from behind it looks as from the front.
+TEST_F(SurfaceRoundsOfAnArm, NameAViewThatLooksAlikeFromElsewhere) {
+  const test::Shape box = test::box({-0.2, -0.12, 0.0}, {0.2, 0.12, 0.5});
+  std::ofstream(folder_ / "base.stl", std::ios::binary) << test::binary_stl(box.for_file());
+  CalibrationSetup clouds = setup_of(test::mesh_config("", ", link_name: base"));
+  const RobotSurface surface({{"base", TriangleTree(box.vertices, box.triangles)}});
+  clouds.samples = test::mesh_robot_samples(clouds.robot, {.samples = 4, .noise = 0.001}, surface);
+  EXPECT_THAT(
+      prepare(std::move(clouds)).diagnostics.doubts,
+      testing::Contains(HasSubstr("'camera_joint' may stand elsewhere: turned by 180 deg")));
+}
+
 TEST_F(SurfaceRoundsOfAnArm, LeaveTheBackgroundOut) {
   const PreparedCalibration prepared =
       prepare(setup(test::mesh_config(kStart), {.noise = 0.001, .background = true}));

@@ -121,8 +121,8 @@ inline Pose<double> true_camera() {
 }
 
 /// Clouds of the arm, seen by true_camera().
-inline std::vector<Sample> mesh_robot_samples(const Robot& robot, const CloudPlan& plan) {
-  const RobotSurface surface = mesh_robot_surface();
+inline std::vector<Sample> mesh_robot_samples(const Robot& robot, const CloudPlan& plan,
+                                              const RobotSurface& surface = mesh_robot_surface()) {
   std::mt19937 engine(plan.seed);
   std::uniform_real_distribution<double> turn(-1.0, 1.0);
   std::normal_distribution<double> noise(0.0, 1.0);

@@ -230,6 +230,8 @@ class OutlineFit {
   [[nodiscard]] const OutlineRounds& rounds() const { return rounds_; }
   /// The gate beyond which nothing counts in the end, pixels.
   [[nodiscard]] double gate() const { return gate_; }
+  /// What look_alike() says of a search.
+  [[nodiscard]] const std::optional<std::string>& alike() const { return alike_; }
 
   /// Where the rounds end.
   [[nodiscard]] OutlineState run(std::span<const Sample> samples, const Eigen::VectorXd& start,
@@ -247,12 +249,15 @@ class OutlineFit {
       bool is_found = false;
       for (const OutlineBlock& block : rounds_.blocks()) {
         for (const UnknownFrame& frame : unknown) {
+          std::vector<SearchEnd> ends;
           for (const Eigen::VectorXd& values : searched(block, frame, *problem, few, start)) {
             OutlineState end = coarse(few, values, 0.25);
+            ends.push_back({end.values, end.cost});
             if (best && on_robot(few, end) <= on_robot(few, *best)) continue;
             best = std::move(end);
             is_found = true;
           }
+          alike_ = look_alike(frame, ends);
         }
       }
       if (is_found) {
@@ -322,6 +327,7 @@ class OutlineFit {
   OutlineRounds rounds_;
   double gate_ = 0.0;
   double size_ = 0.0;  ///< of the largest masks, pixels
+  std::optional<std::string> alike_;
 };
 
 /// Names links whose outline is off in most samples where it is seen.
@@ -413,6 +419,7 @@ void match_outlines(const SurfaceInput& input, Config& config, std::size_t numbe
                        hits[b], diagnostics);
   }
   if (diagnostics.errors.size() > before) return;
+  if (fit.alike()) diagnostics.doubt(of_step.place, *fit.alike());
   samples = fit.rounds().matched(samples, hits, fit.gate());
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     constexpr double kLeast = 1e-3;  // pixels

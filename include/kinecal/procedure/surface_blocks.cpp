@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -212,6 +213,32 @@ std::vector<Pose<double>> SearchedFrame::links(const SurfaceBlock& block, const 
   std::vector<Pose<double>> links = link_poses(block.surface, block.pair, problem_, values, sample);
   for (Pose<double>& link : links) link = frame_T_base * link;
   return links;
+}
+
+std::optional<std::string> look_alike(const UnknownFrame& frame, std::span<const SearchEnd> ends) {
+  constexpr double kNearly = 1.15;                  // of the least cost
+  constexpr double kTurned = 0.17, kShifted = 0.1;  // rad and metres: another pose
+  const auto best = std::ranges::min_element(ends, {}, &SearchEnd::cost);
+  if (best == ends.end()) return std::nullopt;
+  const auto pose_of = [&](const SearchEnd& end) {
+    const auto at = [&](std::size_t k) { return end.values[frame.axes[k]]; };
+    return Pose<double>{exp(Vector3<double>(at(3), at(4), at(5))), {at(0), at(1), at(2)}};
+  };
+  const Pose<double> of_best = pose_of(*best);
+  for (const SearchEnd& end : ends) {
+    const Pose<double> pose = pose_of(end);
+    const double turn = log(Matrix3<double>(of_best.rotation.transpose() * pose.rotation)).norm(),
+                 shift = (pose.translation - of_best.translation).norm();
+    if (!(end.cost < kNearly * best->cost) || (turn < kTurned && shift < kShifted)) continue;
+    return fmt::format(
+        "'{}' may stand elsewhere: turned by {:.0f} deg and shifted by {:.0f} mm, it fits nearly "
+        "as "
+        "well (cost {:.4g}, the best {:.4g}), because what is seen of the robot looks alike from "
+        "both. "
+        " Record poses in which other links are seen, or give its pose as initial values",
+        frame.name, turn * 180.0 / std::numbers::pi, 1e3 * shift, end.cost, best->cost);
+  }
+  return std::nullopt;
 }
 
 }  // namespace kinecal

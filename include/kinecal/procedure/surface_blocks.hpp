@@ -87,4 +87,15 @@ class SearchedFrame {
   std::optional<SampledChain> before_;
 };
 
+/// Where rounds ended that began at a pose which a search suggested.
+struct SearchEnd {
+  Eigen::VectorXd values;  ///< of all parameters of the table
+  double cost = 0.0;       ///< the same of all ends: of the same samples and gate
+};
+
+/// Says that the robot looks alike from the best pose of a frame and from another one.
+/// @returns  nullopt if no other pose fits nearly as well
+[[nodiscard]] std::optional<std::string> look_alike(const UnknownFrame& frame,
+                                                    std::span<const SearchEnd> ends);
+
 }  // namespace kinecal

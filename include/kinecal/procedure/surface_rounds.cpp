@@ -231,13 +231,16 @@ class SurfaceFit {
     if (!best || contrast(few, *best) < 1.0) {
       double least = best ? ranked(few, best->values) : std::numeric_limits<double>::infinity();
       std::optional<Eigen::VectorXd> found;
+      std::vector<SearchEnd> ends;
       for (const Eigen::VectorXd& values : searched(samples, start, unknown)) {
         const RoundState end = coarse(near(samples, values, kFewestPoints), values, kQuick);
         const double rank = ranked(few, end.values);
+        ends.push_back({end.values, rank});
         if (rank >= least) continue;
         least = rank;
         found = end.values;
       }
+      if (unknown.size() == 1) alike_ = look_alike(unknown.front(), ends);
       if (found) {
         best =
             coarse(near(samples, *found, kFewPoints), *found, {.gates = {0.06, 0.03}, .rounds = 3});
@@ -306,6 +309,8 @@ class SurfaceFit {
 
   /// The gate beyond which points of a block do not count in the end, metres.
   [[nodiscard]] double gate() const { return gate_; }
+  /// What look_alike() says of a search.
+  [[nodiscard]] const std::optional<std::string>& alike() const { return alike_; }
 
  private:
   /// How gates shrink.
@@ -419,6 +424,7 @@ class SurfaceFit {
   std::span<const SurfaceBlock> blocks_;
   SurfaceRounds rounds_;
   double gate_ = kWidest;
+  std::optional<std::string> alike_;
 };
 
 /// Of the surface that the camera should see, the share with a measured point near it, in the mean of the links; 1 if it
@@ -713,6 +719,7 @@ void match_clouds(const SurfaceInput& input, Config& config, std::size_t number,
     }
   }
   if (diagnostics.errors.size() == before) {
+    if (fit.alike()) diagnostics.doubt(of_step.place, *fit.alike());
     check_joints(fit, input, of_step, assumed.table, heard, start, values, diagnostics);
   }
   samples = rounds.matched(samples, hits, fit.gate());

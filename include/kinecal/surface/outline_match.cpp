@@ -119,7 +119,7 @@ std::vector<Sample> with_outline(const RobotSurface& surface, const SurfacePair&
       edge.id.reset();  // some edges occur twice
       edge.conditions["nu"] = hit.on.normal.x();
       edge.conditions["nv"] = hit.on.normal.y();
-      features.push_back({hit.on.link, std::move(edge), {.point = hit.on.point}});
+      features.push_back({hit.on.link, std::move(edge), {.frame = {}, .point = hit.on.point}});
     });
     set_matched(surface, pair, std::move(features), matched[s]);
   }

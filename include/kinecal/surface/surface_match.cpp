@@ -156,7 +156,7 @@ std::vector<Sample> with_surface(const RobotSurface& surface, const SurfacePair&
       const SurfaceHit& hit = hits[s][i];
       if (hit.link < 0 || hit.distance > gate) continue;
       const Feature& point = samples[s].observation(pair.camera)->features[i];
-      features.push_back({hit.link, point, {.point = hit.point, .id = point.id}});
+      features.push_back({hit.link, point, {.frame = {}, .point = hit.point, .id = point.id}});
       features.back().on_link.conditions = {
           {"nx", hit.normal.x()}, {"ny", hit.normal.y()}, {"nz", hit.normal.z()}};
     }

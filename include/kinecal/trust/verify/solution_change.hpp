@@ -21,12 +21,12 @@ namespace kinecal {
 
 /// The change of the parameters of a joint, frame or sensor.
 struct OwnerChange {
-  std::string owner;              ///< "camera_joint"
-  std::vector<int> parameters;    ///< table indices
-  std::vector<double> change;     ///< of each
-  std::vector<double> deviation;  ///< standard deviation of each change
-  double statistic = 0.0;         ///< X of these parameters alone
-  double probability = 1.0;       ///< of a larger one by chance
+  std::string owner = {};              ///< "camera_joint"
+  std::vector<int> parameters = {};    ///< table indices
+  std::vector<double> change = {};     ///< of each
+  std::vector<double> deviation = {};  ///< standard deviation of each change
+  double statistic = 0.0;              ///< X of these parameters alone
+  double probability = 1.0;            ///< of a larger one by chance
 };
 
 /// Whether two solutions agree.
