@@ -104,8 +104,9 @@ TEST_F(OutlineRoundsOfAnArm, RefuseMasksOfOtherJoints) {
   for (std::size_t s = 0; s < masks.samples.size(); ++s) {
     masks.samples[s].joint_positions = positions[(s + 3) % positions.size()];
   }
-  EXPECT_THAT(prepare(masks).diagnostics.errors,
-              testing::ElementsAre(HasSubstr("the masks do not show the robot")));
+  const Diagnostics found = prepare(masks).diagnostics;
+  EXPECT_THAT(found.errors, testing::ElementsAre(HasSubstr("the masks do not show the robot")))
+      << testing::PrintToString(found.notes);
 }
 
 /// The camera pans beside the robot: it stands elsewhere in each sample.

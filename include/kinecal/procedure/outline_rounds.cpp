@@ -330,17 +330,25 @@ class OutlineFit {
   std::optional<std::string> alike_;
 };
 
-/// Names links whose outline is off in most samples where it is seen.
-[[nodiscard]] std::string links_off(const SurfaceBlock& block, const OutlineHits& hits,
-                                    double within) {
-  constexpr std::size_t kFewest = 50;
-  constexpr double kOften = 0.6;
-  std::vector<std::vector<double>> of_links(block.surface.links().size());
+/// Distances of the outline of each link in all samples.
+[[nodiscard]] std::vector<std::vector<double>> distances_of_links(const OutlineHits& hits,
+                                                                  std::size_t links) {
+  std::vector<std::vector<double>> of_links(links);
   for (const OutlineMatch& of_sample : hits) {
     for (const OutlineHit& hit : of_sample.outline) {
       of_links[static_cast<std::size_t>(hit.on.link)].push_back(hit.distance);
     }
   }
+  return of_links;
+}
+
+/// Names links whose outline is off in most samples where it is seen.
+[[nodiscard]] std::string links_off(const SurfaceBlock& block, const OutlineHits& hits,
+                                    double within) {
+  constexpr std::size_t kFewest = 50;
+  constexpr double kOften = 0.6;
+  const std::vector<std::vector<double>> of_links =
+      distances_of_links(hits, block.surface.links().size());
   std::string text;
   for (std::size_t l = 0; l < of_links.size(); ++l) {
     if (of_links[l].size() < kFewest || share_within(of_links[l], within) > kOften) continue;
@@ -354,9 +362,54 @@ class OutlineFit {
   return text.empty() ? text : text + ": covered, or not as its mesh";
 }
 
+/// True for each link of a surface that moves before its camera from sample to sample.
+[[nodiscard]] std::vector<bool> moving_links(const SurfaceBlock& block, const AnyProblem& problem,
+                                             std::span<const Sample> samples,
+                                             const Eigen::VectorXd& values) {
+  constexpr double kTurn = 0.02, kShift = 5e-3;  // rad, metres
+  const auto camera = std::ranges::find_if(problem.sensors(), [&](const MountedSensor& one) {
+    return one.mount().name == block.pair.camera;
+  });
+  const SampledChain& chain = camera->chains().front();
+  const Corrections<double> corrections =
+      corrections_for(chain.parameters(), ParameterValues(values));
+  std::vector<bool> moves(block.surface.links().size(), false);
+  std::vector<Pose<double>> first;
+  for (const Sample& sample : samples) {
+    if (sample.observation(block.pair.camera) == nullptr) continue;
+    const Pose<double> camera_T_base = chain.tip(sample, corrections).inverse();
+    std::vector<Pose<double>> links =
+        link_poses(block.surface, block.pair, problem, values, sample);
+    for (Pose<double>& link : links) link = camera_T_base * link;
+    if (first.empty()) first = links;
+    for (std::size_t l = 0; l < links.size(); ++l) {
+      const Pose<double> apart = first[l].inverse() * links[l];
+      if (log(apart.rotation).norm() > kTurn || apart.translation.norm() > kShift) moves[l] = true;
+    }
+  }
+  return moves;
+}
+
+/// The share of the outline of links that move which has an edge near, in the mean of the links: a base may look right
+/// while the arm does not.
+[[nodiscard]] double share_of_moving(const OutlineHits& hits, const std::vector<bool>& moves,
+                                     double within) {
+  constexpr std::size_t kFewest = 50;
+  const std::vector<std::vector<double>> of_links = distances_of_links(hits, moves.size());
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t l = 0; l < moves.size(); ++l) {
+    if (!moves[l] || of_links[l].size() < kFewest) continue;
+    sum += share_within(of_links[l], within);
+    ++count;
+  }
+  return count == 0 ? 1.0 : sum / count;
+}
+
 /// Says how the masks lie on the robot; an error if they do not.
+/// @param moves  see moving_links()
 void report_fit(const OutlineBlock& of_masks, const BlockConfig& of, double gate,
-                const OutlineHits& hits, Diagnostics& diagnostics) {
+                const OutlineHits& hits, const std::vector<bool>& moves, Diagnostics& diagnostics) {
   const SurfaceBlock& block = *of_masks.of;
   const double near = of_masks.near();
   const std::vector<double> edges = distances_of(hits, &OutlineMatch::edges),
@@ -366,16 +419,19 @@ void report_fit(const OutlineBlock& of_masks, const BlockConfig& of, double gate
   const std::string masks =
       fmt::format("{} of masks of sensor '{}' in {}", counted(edges.size(), "edge"),
                   block.pair.camera, counted(hits.size(), "sample"));
-  if (on_edges < kLeastShare || on_outline < kLeastShare) {
+  const double on_moving = share_of_moving(hits, moves, near);
+  if (on_edges < kLeastShare || on_outline < kLeastShare || on_moving < kLeastShare) {
     diagnostics.error(
         of.place,
         fmt::format(
             "error block '{}': the masks do not show the robot.  Of {}, {:.0f} % are within "
-            "{:.3g} px of its outline after the best fit, and {:.0f} % of its outline within "
-            "{:.3g} px of them.  Are these masks of this robot (255: robot), of this camera, "
+            "{:.3g} px of its outline after the best fit, and {:.0f} % of its outline, {:.0f} % of "
+            "that "
+            "of links that move, within {:.3g} px of them.  Are these masks of this robot (255: "
+            "robot), of this camera, "
             "with the joints of the same images?  If the camera's pose is far off, leave its "
             "initial values out: then it is searched for",
-            of.name, masks, 100.0 * on_edges, near, 100.0 * on_outline, near));
+            of.name, masks, 100.0 * on_edges, near, 100.0 * on_outline, 100.0 * on_moving, near));
     return;
   }
   const LossType type = loss_type(of.loss.type);
@@ -412,11 +468,13 @@ void match_outlines(const SurfaceInput& input, Config& config, std::size_t numbe
   const std::vector<Sample> heard = heard_samples(samples, input.exclude);
   values = fit.run(heard, values, unknown, diagnostics).values;
   constexpr double kFar = 1e3;  // pixels
+  const std::unique_ptr<AnyProblem> problem = step.problem();
   const std::vector<OutlineHits> hits =
-      fit.rounds().associated(*step.problem(), samples, values, kFar, false);
+      fit.rounds().associated(*problem, samples, values, kFar, false);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     detail::report_fit(fit.rounds().blocks()[b], block_of(of_step, blocks[b].name), fit.gate(),
-                       hits[b], diagnostics);
+                       hits[b], detail::moving_links(blocks[b], *problem, samples, values),
+                       diagnostics);
   }
   if (diagnostics.errors.size() > before) return;
   if (fit.alike()) diagnostics.doubt(of_step.place, *fit.alike());
