@@ -160,6 +160,7 @@ void add_couplings(const Config& config, const Robot& robot, const std::vector<U
 void add_features(const Config& config, std::span<const Sample> samples, Suspects& all) {
   const std::set<std::string> pixels = pixel_models(config);
   for (const ModelConfig& model : models_of(config)) {
+    if (model.is_surface) continue;  // its points are those of meshes that were matched
     const std::string name = model.name;
     const auto each = [name](Sample& s, auto&& change) {
       for (Observation& seen : s.observations) {
@@ -224,7 +225,8 @@ void add_features(const Config& config, std::span<const Sample> samples, Suspect
 
 /// Frames of two models, or their names in the samples, exchanged.
 void add_models(const Config& config, Suspects& all) {
-  const std::vector<ModelConfig> models = models_of(config);
+  std::vector<ModelConfig> models = models_of(config);
+  std::erase_if(models, [](const ModelConfig& model) { return model.is_surface; });
   for (std::size_t a = 0; a < models.size(); ++a) {
     for (std::size_t b = a + 1; b < models.size(); ++b) {
       const ModelConfig &first = models[a], &second = models[b];

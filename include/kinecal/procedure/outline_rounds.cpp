@@ -66,6 +66,7 @@ struct OutlineManner {
   double gate = 100.0;               ///< pixels
   std::optional<double> huber = {};  ///< pixels, of a loss in place of the configured one
   int rounds = 1;                    ///< at most
+  double tolerance = 1e-7;           ///< relative fall of the cost at which rounds end
   bool is_simple = false;            ///< with simple meshes
 };
 
@@ -91,13 +92,12 @@ class OutlineRounds {
   /// Goes downhill from values; returns the state in which it ended.
   [[nodiscard]] OutlineState run(const OutlineManner& manner, std::span<const Sample> samples,
                                  const Eigen::VectorXd& values) const {
-    constexpr double kSettled = 1e-7;  // of the cost
     const std::unique_ptr<AnyProblem> problem = step_.problem(of_step_, manner.huber);
     const auto match = [&](Eigen::VectorXd at, const OutlineState&) {
       return evaluated(*problem, manner, samples, std::move(at));
     };
     OutlineState start = evaluated(*problem, manner, samples, values);
-    return go_downhill(problem->table(), std::move(start), manner.rounds, kSettled, match);
+    return go_downhill(problem->table(), std::move(start), manner.rounds, manner.tolerance, match);
   }
 
   /// What belongs together in all samples.
@@ -279,8 +279,9 @@ class OutlineFit {
     for (const double of_size : {1.4, 0.7, 0.35, 0.17, 0.1}) {
       const double gate = of_size * size_;
       if (of_size > 1.4 * part) continue;
-      state = rounds_.run({.gate = gate, .huber = 0.2 * gate, .rounds = 6, .is_simple = true}, few,
-                          state.values);
+      state = rounds_.run(
+          {.gate = gate, .huber = 0.2 * gate, .rounds = 6, .tolerance = 1e-2, .is_simple = true},
+          few, state.values);
     }
     return state;
   }

@@ -73,7 +73,12 @@ class MaskSearcher {
     poses = best_of(poses, search_.refined, kFarTurn, 1e9);
     poses = best_of(downhill(std::move(poses)), 2 * search_.kept, kTurn, kShift);
     for (CameraPose& one : poses) refine(one, 0.3 * kFarOutside, 8);
-    return best_of(poses, search_.kept, kTurn, kShift);
+    poses = best_of(poses, search_.kept, kTurn, kShift);
+    std::erase_if(poses, [&](const CameraPose& one) {
+      constexpr double kNearly = 1.5;  // of the best
+      return one.misfit > kNearly * poses.front().misfit;
+    });
+    return poses;
   }
 
  private:
