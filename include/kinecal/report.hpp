@@ -15,6 +15,7 @@
 #include "kinecal/report/charts/features.hpp"
 #include "kinecal/report/charts/held_out.hpp"
 #include "kinecal/report/charts/image_place.hpp"
+#include "kinecal/report/charts/outlines.hpp"
 #include "kinecal/report/charts/parameters.hpp"
 #include "kinecal/report/charts/pixels.hpp"
 #include "kinecal/report/charts/planes.hpp"

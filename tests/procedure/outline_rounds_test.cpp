@@ -19,7 +19,7 @@
 namespace kinecal {
 namespace {
 
-using test::angle_of, test::camera_in, test::distance_of, test::kStart;
+using test::angle_of, test::camera_in, test::distance_of, test::kStart, test::mask_config;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -30,16 +30,6 @@ ParameterTable begin_of(const PreparedCalibration& of) {
     table[p].value = of.calibration.begin[static_cast<std::size_t>(p)];
   }
   return table;
-}
-
-/// The configuration of clouds, of masks.
-std::string mask_config(const std::string& initial, const std::string& free_params = "") {
-  std::string config = test::mesh_config(initial, "", free_params);
-  for (const auto& [what, with] : {std::pair<std::string, std::string>("camera3d", "camera2d"),
-                                   {"chain3d_to_mesh", "camera2d_to_mesh"}}) {
-    config.replace(config.find(what), what.size(), with);
-  }
-  return config;
 }
 
 /// The arm, and masks of it.

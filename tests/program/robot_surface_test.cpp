@@ -68,13 +68,8 @@ TEST_F(RobotSurfaceProgram, VerifiesByNewClouds) {
 }
 
 TEST_F(RobotSurfaceProgram, CalibratesByMasks) {
-  std::string config = test::mesh_config("");
-  for (const auto& [what, with] : {std::pair<std::string, std::string>("camera3d", "camera2d"),
-                                   {"chain3d_to_mesh", "camera2d_to_mesh"}}) {
-    config.replace(config.find(what), what.size(), with);
-  }
-  const Outcome result =
-      calibrate(test::mask_robot_samples(robot_, {.samples = 6, .pixels = 2}), config);
+  const Outcome result = calibrate(test::mask_robot_samples(robot_, {.samples = 6, .pixels = 2}),
+                                   test::mask_config(""));
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("'camera_joint' was searched"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out/calibrated.urdf"));

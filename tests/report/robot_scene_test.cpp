@@ -6,6 +6,7 @@
 
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
+#include "support/mesh_robot_test.hpp"
 #include "support/noisy_scene.hpp"
 
 namespace kinecal {
@@ -311,6 +312,84 @@ TEST(RobotScene, CamerasHaveTheirCalibratedFocalLengths) {
   EXPECT_EQ(scene.cameras[0].link, link_of(scene, "camera_optical_frame"));
   EXPECT_DOUBLE_EQ(scene.cameras[0].fx,
                    550.0 * (1.0 + found.findings.result.table["camera_fx"].value));
+}
+
+/// The arm with meshes, calibrated by clouds.
+class SceneOfClouds : public test::MeshRobotTest {
+ protected:
+  [[nodiscard]] CalibratedRobot calibrated(const std::string& initial) const {
+    CalibrationSetup setup = setup_of(test::mesh_config(initial));
+    setup.samples = test::mesh_robot_samples(setup.robot, {.samples = 4, .noise = 0.001});
+    return calibrate_robot(std::move(setup));
+  }
+  [[nodiscard]] static RobotScene scene_of(const CalibratedRobot& of,
+                                           const SceneLimits& limits = {}) {
+    return robot_scene(of.setup.calibration, of, of.samples, limits);
+  }
+};
+
+Vector3<double> vector_of(const ScenePoint& p) {
+  return {p[0], p[1], p[2]};
+}
+
+TEST_F(SceneOfClouds, PointsAreBesideTheRobotBeforeAndOnItAfter) {
+  const CalibratedRobot of = calibrated(test::kStart);
+  const RobotScene scene = scene_of(of);
+  ASSERT_THAT(scene.samples, SizeIs(4));
+  const RobotSurface surface = test::mesh_robot_surface();
+  ParameterTable start = of.setup.calibration.table;
+  const Pose<double> was = test::camera_in(start), is = test::camera_in(of.result.table);
+  for (std::size_t n = 0; n < scene.samples.size(); ++n) {
+    const SceneCloud &before = scene.samples[n].matched_before,
+                     &after = scene.samples[n].matched_after;
+    EXPECT_THAT(scene.samples[n].features, IsEmpty()) << "thousands of lines";
+    ASSERT_THAT(after.points, SizeIs(of.samples[n].observations.front().features.size()));
+    ASSERT_THAT(before.points, SizeIs(after.points.size()));
+    ASSERT_THAT(after.distances, SizeIs(after.points.size()));
+    const auto links = test::mesh_robot_poses(of.setup.robot, test::positions_of(of.samples[n]));
+    double far_before = 0.0, far_after = 0.0;
+    for (std::size_t i = 0; i < after.points.size(); ++i) {
+      const Vector3<double> p = vector_of(after.points[i]);
+      EXPECT_NEAR(surface.closest(links, p).distance, after.distances[i], 1e-4)
+          << "the solve goes on where rounds end";
+      const Vector3<double> same = was * Vector3<double>(is.inverse() * p);
+      EXPECT_LT((vector_of(before.points[i]) - same).norm(), kExact) << "the camera has moved";
+      far_before += before.distances[i] / static_cast<double>(after.points.size());
+      far_after += after.distances[i] / static_cast<double>(after.points.size());
+    }
+    EXPECT_GT(far_before, 10.0 * far_after);
+    EXPECT_LT(far_after, 2e-3);
+  }
+}
+
+TEST_F(SceneOfClouds, AreThinnedEvenlyAndAlike) {
+  const CalibratedRobot of = calibrated(test::kStart);
+  const RobotScene all = scene_of(of), few = scene_of(of, {.points = 200});
+  for (std::size_t n = 0; n < few.samples.size(); ++n) {
+    const auto &whole = all.samples[n].matched_after.points,
+               &thin = few.samples[n].matched_after.points;
+    ASSERT_THAT(thin, SizeIs(50));
+    for (std::size_t i = 0; i < thin.size(); ++i) EXPECT_EQ(thin[i], whole[i * whole.size() / 50]);
+    EXPECT_THAT(few.samples[n].matched_before.points, SizeIs(50));
+  }
+}
+
+TEST_F(SceneOfClouds, APoseThatNobodyGaveHasNoBefore) {
+  const CalibratedRobot of = calibrated("");
+  EXPECT_THAT(of.result.steps.front().starts.frames, testing::ElementsAre("camera_joint"));
+  EXPECT_FALSE(of.result.steps.front().starts.searched()) << "the rounds did";
+  for (const SceneSample& sample : scene_of(of).samples) {
+    EXPECT_THAT(sample.matched_before.points, IsEmpty());
+    EXPECT_THAT(sample.matched_after.points, testing::Not(IsEmpty()));
+  }
+}
+
+TEST(RobotScene, WithoutASurfaceHasNoCloudOnIt) {
+  const Found found(add_points);
+  for (const SceneSample& sample : found.scene().samples) {
+    EXPECT_THAT(sample.matched_before.points, IsEmpty());
+    EXPECT_THAT(sample.matched_after.points, IsEmpty());
+  }
 }
 
 }  // namespace

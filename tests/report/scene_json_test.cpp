@@ -167,5 +167,29 @@ TEST(SceneJson, AnEmptySceneIsAnObject) {
   EXPECT_FALSE(json["workspace"]);
 }
 
+TEST(SceneJson, CloudsOnTheSurfaceAreStepsFromACorner) {
+  RobotScene scene = one_of_everything();
+  EXPECT_FALSE(YAML::Load(scene_json(scene))["samples"][0]["matched"]);
+  SceneCloud& cloud = scene.samples[0].matched_after;
+  cloud.points = {{-1.0, 0.25, 2.0}, {0.5, -0.75, 2.5}};
+  cloud.distances = {0.0123, 0.0004};
+  const YAML::Node matched = YAML::Load(scene_json(scene))["samples"][0]["matched"];
+  EXPECT_FALSE(matched["before"]);
+  const YAML::Node after = matched["after"];
+  EXPECT_EQ(after["low"].as<std::vector<double>>(), (std::vector{-1.0, -0.75, 2.0}));
+  EXPECT_EQ(after["step"].as<double>(), 1e-4);
+  EXPECT_EQ(numbers_of<std::uint16_t>(after["points"].as<std::string>()),
+            (std::vector<std::uint16_t>{0, 10000, 0, 123, 15000, 0, 5000, 4}));
+}
+
+TEST(SceneJson, CloudsOfLargeRobotsHaveLargerSteps) {
+  RobotScene scene = one_of_everything();
+  scene.samples[0].matched_before = {{{0.0, 0.0, 0.0}, {65.535, 0.0, 0.0}}, {0.01, 0.0}};
+  const YAML::Node before = YAML::Load(scene_json(scene))["samples"][0]["matched"]["before"];
+  EXPECT_NEAR(before["step"].as<double>(), 1e-3, 1e-9);
+  EXPECT_EQ(numbers_of<std::uint16_t>(before["points"].as<std::string>()),
+            (std::vector<std::uint16_t>{0, 0, 0, 10, 65535, 0, 0, 0}));
+}
+
 }  // namespace
 }  // namespace kinecal

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "kinecal/capture/finders/mask_finder.hpp"
@@ -11,6 +13,16 @@
 #include "support/mesh_robot.hpp"
 
 namespace kinecal::test {
+
+/// mesh_config() of masks in place of clouds.
+inline std::string mask_config(const std::string& initial, const std::string& free_params = "") {
+  std::string config = mesh_config(initial, "", free_params);
+  for (const auto& [what, with] : {std::pair<std::string, std::string>("camera3d", "camera2d"),
+                                   {"chain3d_to_mesh", "camera2d_to_mesh"}}) {
+    config.replace(config.find(what), what.size(), with);
+  }
+  return config;
+}
 
 /// A pinhole of 320 x 240 pixels.
 inline CameraInfo mask_camera() {
@@ -50,15 +62,6 @@ inline GrayImage mask_of(const RobotSurface& surface, const std::vector<Pose<dou
     }
   }
   return mask;
-}
-
-/// Joint positions of a sample by name.
-inline std::map<std::string, double> positions_of(const Sample& sample) {
-  std::map<std::string, double> q;
-  for (std::size_t j = 0; j < sample.joint_names.size(); ++j) {
-    q[sample.joint_names[j]] = sample.joint_positions[j];
-  }
-  return q;
 }
 
 /// Samples of the arm whose camera sees masks, from true_camera().

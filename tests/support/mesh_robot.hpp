@@ -104,6 +104,15 @@ inline std::vector<Pose<double>> mesh_robot_poses(const Robot& robot,
   return poses;
 }
 
+/// Joint positions of a sample by name.
+inline std::map<std::string, double> positions_of(const Sample& sample) {
+  std::map<std::string, double> q;
+  for (std::size_t j = 0; j < sample.joint_names.size(); ++j) {
+    q[sample.joint_names[j]] = sample.joint_positions[j];
+  }
+  return q;
+}
+
 /// How clouds are made.
 struct CloudPlan {
   int samples = 8;

@@ -51,6 +51,9 @@ std::string chart_style() {
 .chart .dots.small path { stroke-width: 3; }
 .chart .arrows path { stroke: var(--after, #1c62b9); stroke-width: 1; stroke-opacity: .6; }
 .chart .arrows.bad path { stroke: var(--bad, #c0262d); stroke-width: 1.6; stroke-opacity: .9; }
+.chart .dots.mask path { stroke: var(--muted, #55616c); stroke-width: 5; stroke-opacity: .5; }
+.chart .dots.outline path { stroke-width: 1.8; stroke-opacity: 1; }
+.chart .dots.outline.before path { stroke: var(--before, #b0651d); }
 .chart [data-sample] { cursor: pointer; }
 .chart .hatch { stroke: var(--care, #a86a00); stroke-width: 1.2; stroke-opacity: .55; }
 .chart .care { fill: var(--care, #a86a00); }

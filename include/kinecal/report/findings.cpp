@@ -234,6 +234,23 @@ std::string note_on(const Parameter& parameter, double deviation) {
   return "";
 }
 
+bool has_before(const Findings& findings, const AnyProblem& problem, const Term& term) {
+  const auto was_unknown = [&](const ChainJoint& joint) {
+    return std::any_of(findings.result.steps.begin(), findings.result.steps.end(),
+                       [&](const StepResult& step) {
+                         const auto& frames = step.starts.frames;
+                         return std::find(frames.begin(), frames.end(), joint.name) != frames.end();
+                       });
+  };
+  for (const int s : term.sensors) {
+    for (const SampledChain& chain : problem.sensors()[static_cast<std::size_t>(s)].chains()) {
+      const auto& joints = chain.chain().joints;
+      if (std::any_of(joints.begin(), joints.end(), was_unknown)) return false;
+    }
+  }
+  return true;
+}
+
 [[nodiscard]] inline std::string correlations_text(const Findings& findings) {
   std::string text;
   if (findings.assessments.empty()) return text;

@@ -56,6 +56,9 @@ namespace detail {
 [[nodiscard]] std::string cause_text(const Findings& findings, int sample);
 /// "not determined", "hardly determined", "not significant", or empty.
 [[nodiscard]] std::string note_on(const Parameter& parameter, double deviation);
+/// False if a pose on the way to a sensor of an error block was searched for: nobody gave it.
+[[nodiscard]] bool has_before(const Findings& findings, const AnyProblem& problem,
+                              const Term& term);
 
 }  // namespace detail
 

@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "kinecal/errors/plane_to_plane.hpp"
+#include "kinecal/errors/point_to_outline.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/report/json_state.ipp"
 #include "kinecal/report/left_out.ipp"
@@ -43,6 +44,25 @@ void add_sight(const AnyProblem& problem, const Term& term, const Sample& sample
     } else if (!reported.depth) {
       reported.depth = feature->point.z();
     }
+  }
+}
+
+/// Adds where the outline of the robot should be in a sample's image.
+/// @param places    for some values
+/// @param features  of the term and the sample
+void add_outline(const AnyProblem& problem, const FeaturePlaces& places, const Term& term,
+                 const Sample& sample, std::span<ReportedFeature> features,
+                 std::optional<std::array<double, 2>> ReportedFeature::*pixel) {
+  const int robot = term.sensors.front(), camera = term.sensors.back();
+  const auto seen = [&](int s) {
+    return sample.observation(problem.sensors()[static_cast<std::size_t>(s)].mount().name);
+  };
+  const std::vector<Eigen::Vector2d> pixels =
+      places.pixels(camera, *seen(camera), sample, places.placed(robot, *seen(robot), sample));
+  for (ReportedFeature& feature : features) {
+    const auto i = static_cast<std::size_t>(feature.feature.place);
+    if (feature.feature.id || i >= pixels.size() || !pixels[i].allFinite()) continue;
+    feature.*pixel = {pixels[i].x(), pixels[i].y()};
   }
 }
 
@@ -106,8 +126,12 @@ void add_sight(const AnyProblem& problem, const Term& term, const Sample& sample
   });
   std::vector<double> values;
   for (const Parameter& parameter : findings.result.table) values.push_back(parameter.value);
+  const FeaturePlaces places_before(problem, initial), places_after(problem, values);
   (void)evaluate(problem, values, nullptr, [&](int t, int sample, const TermResiduals& residuals) {
     ReportedBlock& block = blocks[static_cast<std::size_t>(t)];
+    const Term& term = problem.term(t);
+    const Sample& of = samples[static_cast<std::size_t>(sample)];
+    const std::size_t known_before = block.features.size();
     const auto first = before.find({t, sample});
     const std::vector<double> after = distances(residuals, block.components);
     for (std::size_t i = 0; i < after.size(); ++i) {
@@ -121,9 +145,13 @@ void add_sight(const AnyProblem& problem, const Term& term, const Sample& sample
       for (Eigen::Index c = 0; c < block.components; ++c) {
         feature.residual.push_back(residuals.residual(row + c));
       }
-      add_sight(problem, problem.term(t), samples[static_cast<std::size_t>(sample)], feature,
-                block);
+      add_sight(problem, term, of, feature, block);
     }
+    if (term.options.type != PointToOutline::kType) return;
+    const std::span<ReportedFeature> added = std::span(block.features).subspan(known_before);
+    add_outline(problem, places_after, term, of, added, &ReportedFeature::outline_after);
+    if (!has_before(findings, problem, term)) return;
+    add_outline(problem, places_before, term, of, added, &ReportedFeature::outline_before);
   });
   for (ReportedBlock& block : blocks) {
     std::stable_sort(block.features.begin(), block.features.end(),

@@ -38,7 +38,10 @@ struct ReportedFeature {
   double after = 0.0;  ///< the same at the result
   std::vector<double> residual = {};  ///< its components at the result, unit of the block
   std::optional<std::array<double, 2>> pixel =
-      {};                            ///< where a camera observed it; blocks in pixels only
+      {};  ///< where a camera observed it; blocks in pixels only
+  /// Where the outline of the robot should be in the image of a mask, pixels: at the initial values, unless a pose was
+  /// searched for, and at the result.
+  std::optional<std::array<double, 2>> outline_before = {}, outline_after = {};
   std::optional<double> depth = {};  ///< from the depth camera, metres
   std::optional<std::array<double, 3>> point =
       {};  ///< where a depth camera saw it, in the base, metres

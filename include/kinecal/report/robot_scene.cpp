@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "kinecal/errors/plane_fit.hpp"
+#include "kinecal/errors/point_to_mesh.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/kinematics/floating_joint.hpp"
 #include "kinecal/parameters/chain_parameters.hpp"
@@ -197,6 +198,13 @@ class ScenePoints {
     return all;
   }
 
+  /// The points of a term's first sensor, in the base.
+  /// @param sample  with an observation of it
+  [[nodiscard]] std::vector<PlacedFeature> measured(const Term& term, const Sample& sample) const {
+    const int s = term.sensors.front();
+    return places_.placed(s, *sample.observation(sensor(s).mount().name), sample);
+  }
+
   /// The features that a term compares: those that all of its sensors saw.
   [[nodiscard]] std::vector<std::size_t> compared(const Term& term, const Sample& sample) const {
     std::vector<std::size_t> all;
@@ -276,8 +284,14 @@ using SceneResiduals = std::map<std::pair<int, int>, std::vector<double>>;
   return term.options.type == PointToPlane::kType;
 }
 
-/// True if a block's single points can be drawn: with a sphere or a plane.
+/// Thousands of points, drawn as a cloud.
+[[nodiscard]] bool is_on_surface(const Term& term) {
+  return term.options.type == PointToMesh::kType;
+}
+
+/// True if a block's features can be drawn; single points with a sphere or a plane.
 [[nodiscard]] bool can_be_drawn(const Term& term) {
+  if (is_on_surface(term)) return false;
   return term.quantities.size() != 1 || is_point_to_plane(term) ||
          term.options.type == PointToSphere::kType;
 }
@@ -307,9 +321,10 @@ std::size_t thin_features(std::vector<SceneFeature>& features, std::size_t most)
 /// Adds the features of a problem's samples to a scene.
 class SceneFeatures {
  public:
-  SceneFeatures(const AnyProblem& problem, std::span<const double> before,
+  SceneFeatures(const AnyProblem& problem, const Findings& findings, std::span<const double> before,
                 std::span<const double> after, const std::vector<std::size_t>& shown)
       : problem_(problem),
+        findings_(findings),
         points_{ScenePoints(problem, before), ScenePoints(problem, after)},
         residuals_{scene_residuals(problem, before, shown), scene_residuals(problem, after, shown)},
         planes_(static_cast<std::size_t>(problem.num_terms())) {}
@@ -333,6 +348,23 @@ class SceneFeatures {
     }
     std::erase_if(features, [](const SceneFeature& of) { return !of.before && !of.after; });
     return features;
+  }
+
+  /// Sets the points of a sample that are compared with the surface of the robot.
+  /// @param most  of each block and time
+  void set_matched(int sample, const Sample& recorded, std::size_t most, SceneSample& shown) const {
+    const std::optional<Sample> paired = problem_.paired(recorded);
+    for (int t = 0; t < problem_.num_terms(); ++t) {
+      const Term& term = problem_.term(t);
+      if (!is_on_surface(term)) continue;
+      for (const std::size_t when : {0U, 1U}) {
+        const auto residuals = residuals_[when].find({sample, t});
+        if (residuals == residuals_[when].end()) continue;
+        if (when == 0 && !has_before(findings_, problem_, term)) continue;
+        add_evenly(points_[when], term, paired ? *paired : recorded, residuals->second, most,
+                   when == 0 ? shown.matched_before : shown.matched_after);
+      }
+    }
   }
 
   /// Sets the feet of points on planes.
@@ -382,6 +414,20 @@ class SceneFeatures {
     feature.error = reading(*feature.distance, term.options.unit);
   }
 
+  static void add_evenly(const ScenePoints& points, const Term& term, const Sample& sample,
+                         const std::vector<double>& residuals, std::size_t most,
+                         SceneCloud& cloud) {
+    const std::vector<std::size_t> compared = points.compared(term, sample);
+    const std::vector<PlacedFeature> measured = points.measured(term, sample);
+    const std::size_t all = std::min(compared.size(), residuals.size()), kept = std::min(all, most);
+    for (std::size_t n = 0; n < kept; ++n) {
+      const std::size_t i = n * all / kept;
+      const Vector3<double>& p = measured[compared[i]].point;
+      cloud.points.push_back({p.x(), p.y(), p.z()});
+      cloud.distances.push_back(std::abs(residuals[i]));
+    }
+  }
+
   static void move(std::optional<ScenePair>& pair, const std::optional<Vector3<double>>& normal) {
     if (!pair) return;
     if (!normal) {
@@ -394,25 +440,30 @@ class SceneFeatures {
   }
 
   const AnyProblem& problem_;
+  const Findings& findings_;
   std::array<ScenePoints, 2> points_;
   std::array<SceneResiduals, 2> residuals_;
   std::vector<PlaneOfDistances> planes_;  ///< of each term
 };
 
-void add_features(const AnyProblem& problem, const ParameterTable& table,
+void add_features(const AnyProblem& problem, const Findings& findings,
                   std::span<const Sample> samples, const std::vector<std::size_t>& shown,
-                  std::size_t most, RobotScene& scene) {
+                  const SceneLimits& limits, RobotScene& scene) {
   std::vector<double> before, after;
-  for (const Parameter& parameter : table) {
+  for (const Parameter& parameter : findings.result.table) {
     before.push_back(parameter.initial);
     after.push_back(parameter.value);
   }
-  SceneFeatures features(problem, before, after, shown);
+  SceneFeatures features(problem, findings, before, after, shown);
   std::size_t all = 0, kept = 0;
-  const std::size_t each = std::max<std::size_t>(4, most / std::max<std::size_t>(1, shown.size()));
+  constexpr std::size_t kMostPoints = 5'000;  // of a cloud
+  const std::size_t count = std::max<std::size_t>(1, shown.size()),
+                    each = std::max<std::size_t>(4, limits.features / count),
+                    points = std::min(limits.points / count, kMostPoints);
   for (std::size_t n = 0; n < shown.size(); ++n) {
     SceneSample& sample = scene.samples[n];
     sample.features = features.of(static_cast<int>(shown[n]), samples[shown[n]]);
+    features.set_matched(static_cast<int>(shown[n]), samples[shown[n]], points, sample);
     all += sample.features.size();
     kept += thin_features(sample.features, each);
   }
@@ -722,8 +773,7 @@ RobotScene robot_scene(const Calibration& calibration, const Findings& findings,
   for (const std::size_t i : shown) {
     scene.samples.push_back(detail::scene_sample(scene, findings, all.samples()[i], i, used));
   }
-  detail::add_features(all.problem(), findings.result.table, all.samples(), shown, limits.features,
-                       scene);
+  detail::add_features(all.problem(), findings, all.samples(), shown, limits, scene);
   std::stable_sort(scene.samples.begin(), scene.samples.end(),
                    [](const SceneSample& a, const SceneSample& b) { return a.number < b.number; });
   return scene;

@@ -67,6 +67,12 @@ struct SceneFeature {
   std::string error = {};                  ///< the same as text: "3.2 mm"
 };
 
+/// Points of cameras that error blocks compare with the surface of the robot.
+struct SceneCloud {
+  std::vector<ScenePoint> points = {};  ///< metres, in the base
+  std::vector<double> distances = {};   ///< of each from the surface: |residual|, metres
+};
+
 /// A sample.
 struct SceneSample {
   int number = 0;         ///< from 1, in the order of the files
@@ -79,6 +85,7 @@ struct SceneSample {
   std::optional<std::chrono::nanoseconds> stamp = {};  ///< see Sample::stamp
   std::vector<float> cloud = {};  ///< x y z ..., metres, in `cloud_link`; see add_clouds()
   int cloud_link = -1;            ///< link
+  SceneCloud matched_before = {}, matched_after = {};  ///< empty: none, or undefined
 };
 
 /// A camera; its optical frame is that of its link, z forward.
@@ -109,10 +116,11 @@ struct RobotScene {
 struct SceneLimits {
   std::size_t samples = 200;    ///< keeps bad and worst ones, and others evenly
   std::size_t features = 6000;  ///< of all samples; keeps the worst ones of each
+  std::size_t points = 15'000;  ///< of clouds on the surface, of all samples; evenly of each
 };
 
 /// The scene of a finished calibration, without visuals: see add_visuals().  Error blocks that
-/// compare neither points, pixels nor planes have no features in it.
+/// compare neither points, pixels nor planes have no features in it; points on the surface of the robot are clouds.
 /// @param samples   those of the calibration, in their order
 /// @param left_out  those of Findings::left_out, in their order; empty: they are not shown
 [[nodiscard]] RobotScene robot_scene(const Calibration& calibration, const Findings& findings,

@@ -13,7 +13,9 @@ namespace kinecal {
 void add_clouds(const std::vector<std::string>& files, RobotScene& scene) {
   constexpr std::size_t kAll = 60'000, kLeast = 300, kMost = 5'000, kNumbers = 3;
   std::set<std::string> wanted;
-  for (const SceneSample& sample : scene.samples) wanted.insert(sample.source);
+  for (const SceneSample& sample : scene.samples) {
+    if (sample.matched_after.points.empty()) wanted.insert(sample.source);
+  }
   if (wanted.empty()) return;
   const std::size_t each = std::clamp(kAll / wanted.size(), kLeast, kMost);
   std::size_t left = kAll;

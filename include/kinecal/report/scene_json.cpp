@@ -3,6 +3,8 @@
 #include "kinecal/report/scene_json.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -91,6 +93,31 @@ void add_before_after(const std::optional<T>& before, const std::optional<T>& af
   return json;
 }
 
+/// In steps of 0.1 mm, or of what 16 bits allow.
+[[nodiscard]] Json scene_tree(const SceneCloud& cloud) {
+  constexpr double kStep = 1e-4, kMost = 65535.0;
+  ScenePoint low = cloud.points.front(), high = low;
+  for (const ScenePoint& p : cloud.points) {
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      low[k] = std::min(low[k], p[k]);
+      high[k] = std::max(high[k], p[k]);
+    }
+  }
+  double widest = *std::max_element(cloud.distances.begin(), cloud.distances.end());
+  for (std::size_t k = 0; k < low.size(); ++k) widest = std::max(widest, high[k] - low[k]);
+  const double step = std::max(kStep, widest / kMost);
+  const auto steps = [&](double length) {
+    return static_cast<std::uint16_t>(std::min(std::round(length / step), kMost));
+  };
+  std::vector<std::uint16_t> numbers;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    for (std::size_t k = 0; k < low.size(); ++k)
+      numbers.push_back(steps(cloud.points[i][k] - low[k]));
+    numbers.push_back(steps(cloud.distances[i]));
+  }
+  return {{"low", low}, {"step", step}, {"points", base64_of(numbers)}};
+}
+
 [[nodiscard]] Json scene_tree(const SceneSample& sample) {
   Json json = {{"number", sample.number}, {"source", one_line(sample.source)}, {"bad", sample.bad}};
   if (sample.left_out) json["left_out"] = true;
@@ -99,6 +126,12 @@ void add_before_after(const std::optional<T>& before, const std::optional<T>& af
   if (!sample.cloud.empty()) {
     json["cloud"] = base64_of(sample.cloud);
     json["cloud_link"] = sample.cloud_link;
+  }
+  if (!sample.matched_before.points.empty()) {
+    json["matched"]["before"] = scene_tree(sample.matched_before);
+  }
+  if (!sample.matched_after.points.empty()) {
+    json["matched"]["after"] = scene_tree(sample.matched_after);
   }
   Json& features = json["features"] = Json::array();
   for (const SceneFeature& feature : sample.features) features.push_back(scene_tree(feature));

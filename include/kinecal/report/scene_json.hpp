@@ -14,6 +14,8 @@
 //     "names": [joint of q[0], ...],
 //     "samples": [{"number": 1, "source", "bad": false, "note", "q": [...],
 //                  "cloud": base64 of float32 x y z, "cloud_link": 3,
+//                  "matched": {"before": {"low": [x, y, z], "step": 0.0001, "points": base64 of uint16 x y z d},
+//                              "after": ...},  points in the base: low + step * xyz; distance from the robot: step * d
 //                  "features": [{"block": 0, "name", "before": [[3], [3]], "after": ..., "error"}]}],
 //     "blocks": [names], "thinned": "200 of 10000 samples",
 //     "cameras": [{"name", "link", "pose": [7], "width", "height", "fx", "fy", "cx", "cy"}],

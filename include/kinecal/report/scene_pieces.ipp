@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "kinecal/files/checksum.hpp"
@@ -32,15 +33,17 @@ template <class Numbers>
   return json;
 }
 
-/// Four-byte numbers, little-endian, as base64.
+/// Numbers of two or four bytes, little-endian, as base64.
 template <class T>
 [[nodiscard]] std::string base64_of(const std::vector<T>& numbers) {
-  static_assert(sizeof(T) == 4, "base64_of() writes float and uint32_t");
+  static_assert(sizeof(T) == 2 || sizeof(T) == 4,
+                "base64_of() writes float, uint32_t and uint16_t");
+  using Word = std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint32_t>;
   std::string bytes;
-  bytes.reserve(4 * numbers.size());
+  bytes.reserve(sizeof(T) * numbers.size());
   for (const T number : numbers) {
-    const auto word = std::bit_cast<std::uint32_t>(number);
-    for (unsigned byte = 0; byte < 4; ++byte) {
+    const std::uint32_t word = std::bit_cast<Word>(number);
+    for (unsigned byte = 0; byte < sizeof(T); ++byte) {
       bytes += static_cast<char>((word >> (8 * byte)) & 255U);
     }
   }

@@ -73,6 +73,11 @@ class Starts {
           problem.robot().has_joint(problem.owners()[static_cast<std::size_t>(p)]);
       if (of_joint && !is_unknown(p)) of_joints_.push_back(p);
     }
+    for (const UnknownFrame& frame : unknown) {
+      const bool is_found = std::all_of(frame.axes.begin(), frame.axes.end(),
+                                        [](int axis) { return axis < 0; });  // before the solve
+      if (!frame.has_guess && is_found) summary_.frames.push_back(frame.name);
+    }
     const double cost = cost_at(*problem.evaluator(free, options.threads), from);
     if (std::isfinite(cost)) floor_ = kRounding * cost;
   }
@@ -140,7 +145,8 @@ class Starts {
       summary_.taken = static_cast<int>(i);
       break;
     }
-    if (summary_.searched()) result.starts = std::move(summary_);
+    if (!summary_.searched()) summary_ = {.frames = std::move(summary_.frames)};
+    result.starts = std::move(summary_);
     return result;
   }
 

@@ -78,3 +78,14 @@ test("a correction is described in millimetres and degrees", () => {
   assert.equal(correctionText({ type: "prismatic", after: { offset: -0.001 } }), "1.0 mm");
   assert.equal(correctionText({ before: { offset: 0.1 }, after: { offset: 0.1 } }), "");
 });
+test("a cloud on the surface is read as points with distances; its scale ends at five times their median", () => {
+  const points = Buffer.from(new Uint16Array([0, 10000, 20, 40, 15000, 0, 5, 60]).buffer).toString("base64");
+  const module = pageWith({ samples: [{ matched: { after: { low: [-1, 0, 2], step: 1e-4, points } } }, {}] });
+  const { samples, farOff } = module.readScene();
+  near(samples[0].matched.after.points[0], [-1, 1, 2.002]);
+  near(samples[0].matched.after.points[1], [0.5, 0, 2.0005]);
+  near(samples[0].matched.after.distances, [0.004, 0.006]);
+  assert.equal(samples[0].matched.before, null);
+  assert.equal(samples[1].matched.after, null);
+  assert.equal(farOff, 0.02);
+});

@@ -47,18 +47,26 @@ std::string name_with_unit(const char* name, const std::string& unit) {
   return slug.empty() ? name : name + ("-" + slug);
 }
 
-std::vector<Chart> charts_of_blocks(const ReportData& data, const DrawBlock& draw) {
+void for_each_block(
+    const ReportData& data,
+    const std::function<void(const ReportedBlock& block, const std::string& slug)>& visit) {
   std::set<std::string> taken;
-  std::vector<Chart> charts;
   for (const ReportedBlock& block : data.blocks) {
     const std::string slug = slug_of(block.name);
     std::string unique = slug.empty() ? "block" : slug;
     for (int i = 2; !taken.insert(unique).second; ++i) {
       unique = fmt::format("{}-{}", slug.empty() ? "block" : slug, i);
     }
-    Chart chart = draw(block, unique);
-    if (!chart.svg.empty()) charts.push_back(std::move(chart));
+    visit(block, unique);
   }
+}
+
+std::vector<Chart> charts_of_blocks(const ReportData& data, const DrawBlock& draw) {
+  std::vector<Chart> charts;
+  for_each_block(data, [&](const ReportedBlock& block, const std::string& slug) {
+    Chart chart = draw(block, slug);
+    if (!chart.svg.empty()) charts.push_back(std::move(chart));
+  });
   return charts;
 }
 

@@ -40,6 +40,11 @@ inline constexpr std::size_t kMostMarks = 2000;
 /// "errors-mm"; only the name if there is no unit.
 [[nodiscard]] std::string name_with_unit(const char* name, const std::string& unit);
 
+/// Calls a function for each block, in their order.
+/// @param visit  slug: unique name of the block, for charts and files
+void for_each_block(
+    const ReportData& data,
+    const std::function<void(const ReportedBlock& block, const std::string& slug)>& visit);
 /// Draws a chart of a block; one without an svg is left out.
 /// @param slug  unique name of the block, for charts and files
 using DrawBlock = std::function<Chart(const ReportedBlock& block, const std::string& slug)>;

@@ -12,6 +12,7 @@
 #include "kinecal/report/charts/errors.hpp"
 #include "kinecal/report/charts/features.hpp"
 #include "kinecal/report/charts/held_out.hpp"
+#include "kinecal/report/charts/outlines.hpp"
 #include "kinecal/report/charts/parameters.hpp"
 #include "kinecal/report/charts/pixels.hpp"
 #include "kinecal/report/charts/planes.hpp"
@@ -30,8 +31,8 @@ std::vector<Chart> charts(const ReportData& data) {
   const Draw of_parameters = [](const ReportData& of) { return parameter_charts(of); };
   for (const Draw draw : std::initializer_list<Draw>{
            error_charts, held_out_charts, search_charts, sample_charts, feature_charts,
-           pixel_charts, radial_charts, projection_charts, depth_charts, plane_charts,
-           workspace_charts, of_parameters, correlation_charts, unobservable_charts,
+           pixel_charts, outline_charts, radial_charts, projection_charts, depth_charts,
+           plane_charts, workspace_charts, of_parameters, correlation_charts, unobservable_charts,
            convergence_charts, start_charts}) {
     std::vector<Chart> some = draw(data);
     std::move(some.begin(), some.end(), std::back_inserter(all));

@@ -13,6 +13,8 @@
 //                "times": 3.2   of sigma, its worst feature: ranks samples (all have it, or none: then by
 //                               the largest distance of "after")
 //                "cloud": base64 float32 xyz in the frame of link "cloud_link": 3,
+//                "matched": {"before": {"low": [3], "step": 0.0001, "points": base64 uint16 x y z distance}, "after"},
+//                               points on the surface of the robot: low + step xyz in the base, distances step d
 //                "features": [{"block": 0, "name", "error": "3.2 mm",
 //                              "before": [measured, predicted], "after": ...}]}],   points in the base
 //   "blocks": [name], "cameras": [{"name", "link", "pose", "width", "height", "fx", "fy", "cx", "cy"}],
@@ -89,8 +91,20 @@ const bytes = (base64) => {
 };
 const words = (Type, base64) => {
   const buffer = bytes(base64);
-  return new Type(buffer, 0, Math.floor(buffer.byteLength / 4));
+  return new Type(buffer, 0, Math.floor(buffer.byteLength / Type.BYTES_PER_ELEMENT));
 };
+const median = (list) => list.slice().sort((a, b) => a - b)[Math.floor((list.length - 1) / 2)];
+/// Points in the base with their distances from the surface of the robot; null if there are none.
+function matchedOf(cloud) {
+  const { low, step, points } = cloud ?? {};
+  if (!numbers(low, 3) || !(step > 0)) return null;
+  const counts = words(Uint16Array, points), of = { points: [], distances: [] };
+  for (let i = 0; i + 3 < counts.length; i += 4) {
+    of.points.push(low.map((v, k) => v + step * counts[i + k]));
+    of.distances.push(step * counts[i + 3]);
+  }
+  return of.points.length ? { ...of, median: median(of.distances) } : null;
+}
 
 // Kinematics.
 const parts = (correction) => ({ t: vector(correction?.t), r: vector(correction?.r),
@@ -161,6 +175,11 @@ function pairOf(pair) {
   return numbers(pair?.[0], 3) && numbers(pair?.[1], 3) ? [vector(pair[0]), vector(pair[1])] : null;
 }
 const length = (pair) => (pair ? norm(subtract(pair[0], pair[1])) : -1);
+/// The next of 1, 2, 5, 10, 20 and so on.
+function roundUp(value) {
+  const power = 10 ** Math.floor(Math.log10(value)), rest = value / power;
+  return power * (rest <= 1 ? 1 : rest <= 2 ? 2 : rest <= 5 ? 5 : 10);
+}
 function readScene() {
   const scene = JSON.parse(document.getElementById("scene").textContent);
   for (const key of ["links", "joints", "meshes", "samples", "blocks", "cameras"]) {
@@ -173,6 +192,7 @@ function readScene() {
     sample.q = list(sample.q);
     sample.features = list(sample.features).map((f) =>
       ({ ...f, before: pairOf(f.before), after: pairOf(f.after) }));
+    sample.matched = { before: matchedOf(sample.matched?.before), after: matchedOf(sample.matched?.after) };
     sample.worst = sample.features.reduce(
       (worst, f) => (length(f.after) > length(worst?.after) ? f : worst), null);
   }
@@ -181,6 +201,9 @@ function readScene() {
     const [s, t] = [scene.samples[a], scene.samples[b]];
     return (t.bad === true) - (s.bad === true) || rank(t) - rank(s) || a - b;
   });
+  // Where the colours of distances end, metres: few are farther after the calibration.
+  const matched = scene.samples.map((s) => s.matched.after?.median).filter((v) => v !== undefined);
+  scene.farOff = matched.length ? roundUp(Math.max(5 * median(matched), 1e-4)) : 0;
   scene.workspacePoints = list(scene.workspace?.points).filter((p) => numbers(p, 4));
   return scene;
 }

@@ -189,6 +189,13 @@ function drawCloud(poses, color) {
   }
   painter.points(points, { pose });
 }
+/// The points that were compared with the surface of the robot, in the colours of their distances from it.
+function drawMatched(which) {
+  const cloud = here().matched?.[which], points = [];
+  if (!cloud) return;
+  cloud.points.forEach((p, i) => dotAt(points, p, scaleColour(cloud.distances[i] / scene.farOff), 1, 4.5));
+  painter.throughSolids((strength) => painter.points(points, { strength }));
+}
 function drawWorkspace() {
   const points = [], [low, high] = scene.errors;
   for (const [x, y, z, error] of scene.workspacePoints) {
@@ -210,6 +217,7 @@ function draw() {
   if (show.points && exact) {
     if (show.after) drawCloud(is, after);
     else if (show.before) drawCloud(was, ink);
+    if (show.after || show.before) drawMatched(show.after ? "after" : "before");
   }
   if (show.workspace) drawWorkspace();
   const lines = [];
@@ -259,7 +267,8 @@ function robotPoints() {
   }
   return points;
 }
-const featurePoints = () => here().features.flatMap((f) => f.after ?? []);
+const featurePoints = () =>
+  [...here().features.flatMap((f) => f.after ?? []), ...here().matched?.after?.points ?? []];
 /// The view from a direction that shows points as large as the picture allows.
 function fitted(points, yaw = view.yaw, pitch = view.pitch) {
   const { right, up, back } = viewAxes({ yaw, pitch }), tangent = 0.9 * Math.tan(FIELD / 2);
@@ -388,6 +397,11 @@ function describe(sample) {
     const parts = [scene.blocks[worst.block], worst.name, worst.error].filter(Boolean);
     text += `. Largest error: ${parts.map((part) => quoted(part)).join(", ")}`;
   }
+  const { before, after } = sample.matched ?? {};
+  if (after) {
+    const mm = (cloud) => `${Number((1000 * cloud.median).toPrecision(3))} mm`;
+    text += `. Points off the robot by ${before ? `${mm(before)} before, ` : ""}${mm(after)} after (median)`;
+  }
   return `${text.replace(/[.]$/, "")}.`;
 }
 /// Shows a sample.  @param ranked  its place among the worst ones, if it was chosen by that
@@ -456,7 +470,7 @@ function fillPanel() {
   if (scene.corrected.length) {
     panel.append(row(label("view3d-factor", "Exaggeration"), factor, factorText));
   }
-  const has = { points: samples.some((s) => s.features.length || s.cloud),
+  const has = { points: samples.some((s) => s.features.length || s.cloud || s.matched.after),
     frames: scene.corrected.length, cameras: scene.cameras.some((c) => c.fx > 0 && c.fy > 0),
     workspace: scene.workspacePoints.length };
   const names = { after: "After", before: "Before", points: "Points", frames: "Frames",
@@ -475,18 +489,21 @@ function legend() {
   const entry = (kind, text) =>
     element("span", { class: kind }, element("i", { class: "sign", "aria-hidden": "true" }), text);
   const made = element("div", { class: "legend" }, entry("before", "before"), entry("after", "after"),
-    entry("measured", "measured"), entry("predicted", "predicted"),
+    ...samples.some((s) => s.features.length) ? [entry("measured", "measured"), entry("predicted", "predicted")] : [],
     element("span", { class: "grid" }, `grid ${Number(gridStep().toPrecision(1))} m`));
   const errors = scene.workspacePoints.map((p) => p[3]);
   scene.errors = errors.reduce(([a, b], e) => [Math.min(a, e), Math.max(b, e)], [Infinity, -Infinity]);
-  if (errors.length) {
+  const scale = (kind, low, high) => {
     const bar = element("i", { class: "bar", "aria-hidden": "true" });
     const css = SCALE.map((c) => `rgb(${c.map((v) => Math.round(255 * v)).join(" ")})`);
     bar.style.background = `linear-gradient(to right, ${css.join(", ")})`;
+    made.append(element("span", { class: kind }, low, bar, high));
+  };
+  if (errors.length) {
     const [low, high] = scene.errors.map((e) => Number(e.toPrecision(2)));
-    made.append(element("span", { class: "workspace" }, `predicted error ${low}`, bar,
-      `${high} ${scene.workspace.unit ?? ""}`));
+    scale("workspace", `predicted error ${low}`, `${high} ${scene.workspace.unit ?? ""}`);
   }
+  if (scene.farOff) scale("matched", "points off the robot 0", `${Number((1000 * scene.farOff).toPrecision(2))} mm`);
   return made;
 }
 
@@ -596,7 +613,8 @@ function begin() {
     element("span", { class: "for-mouse" }, "Drag to turn, with Shift to move. After a click the wheel zooms ",
       "and keys work: arrows, + and −, Page Up and Page Down for samples. "),
     element("span", { class: "for-fingers" }, "One finger turns, two move and zoom. "),
-    "Measured and predicted points are drawn at 1× only."));
+    "Measured and predicted points are drawn at 1× only.",
+    samples.some((s) => s.matched.before) ? " Points of clouds are those after; without After, those before." : ""));
   figure.classList.add("live");
   resize();
   Object.assign(view, VIEWS.Reset());

@@ -67,4 +67,17 @@ std::vector<PlacedFeature> FeaturePlaces::placed(int sensor, const Observation& 
   return all;
 }
 
+std::vector<Eigen::Vector2d> FeaturePlaces::pixels(int camera, const Observation& seen,
+                                                   const Sample& sample,
+                                                   std::span<const PlacedFeature> points) const {
+  const MountedSensor& of = problem_.sensors()[static_cast<std::size_t>(camera)];
+  const std::vector<double> settings = of.sensor().settings(seen), own = of.own_values(values_);
+  const Pose<double> camera_T_base = base_T_frame(camera, of.mount().frame, sample).inverse();
+  std::vector<Eigen::Vector2d> all;
+  for (const PlacedFeature& point : points) {
+    all.push_back(of.sensor().predict(camera_T_base * point.point, settings, own));
+  }
+  return all;
+}
+
 }  // namespace kinecal

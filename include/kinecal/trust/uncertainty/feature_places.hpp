@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "kinecal/problem/any_problem.hpp"
@@ -34,6 +35,14 @@ class FeaturePlaces {
   /// @param sensor  by number in the problem; one that places points, rays or poses
   [[nodiscard]] std::vector<PlacedFeature> placed(int sensor, const Observation& seen,
                                                   const Sample& sample) const;
+
+  /// The pixels at which a camera should see points; NaN where it does not.
+  /// @param camera  by number in the problem
+  /// @param seen    by the camera in the sample
+  /// @param points  (3) metres, in the base
+  [[nodiscard]] std::vector<Eigen::Vector2d> pixels(int camera, const Observation& seen,
+                                                    const Sample& sample,
+                                                    std::span<const PlacedFeature> points) const;
 
  private:
   [[nodiscard]] Pose<double> base_T_frame(int sensor, const std::string& frame,
