@@ -428,9 +428,11 @@ void add_simulate(CLI::App& command, SimulateOptions& options) {
       .add_option(
           "--target", options.target,
           "checkerboard (default, apriltag if this build does not find it), apriltag, aprilgrid "
-          "(Kalibr's), ground, or leds for a session")
+          "(Kalibr's), ground, robot (its own meshes: clouds; masks if the scene's camera is a "
+          "camera2d), or leds for a session")
       ->excludes(scene)
-      ->check(one_word_of({"checkerboard", "apriltag", "aprilgrid", "ground", "leds"}));
+      ->check(one_word_of({"checkerboard", "apriltag", "aprilgrid", "ground", "robot", "leds"}));
+  add_mesh_path(command, options.mesh_paths);
   command.add_option("--poses", options.poses, "number of images, default: 30")
       ->check(CLI::Range(1, 9999))
       ->type_name("N");
