@@ -394,7 +394,10 @@ void add_init(CLI::App& command, InitOptions& options) {
       .add_option("--tracker-frame", options.tracker_frame,
                   "frame_id of the points of a tracker, default: 'tracker_frame'")
       ->type_name("NAME");
-  command.add_option("--arm", options.arm, "link at the end of the arm")->type_name("LINK");
+  command
+      .add_option("--arm", options.arm,
+                  "link at the end of the arm; with target robot: frees the joints up to it")
+      ->type_name("LINK");
   command.add_option("--camera", options.camera, "the camera's optical frame")->type_name("LINK");
   command
       .add_option("--camera-type", options.camera_type,
@@ -1108,10 +1111,11 @@ void add_commands(Commands& commands, const kinecal::ShellCommand& line) {
   commands.add<DetectOptions>(
       "detect", "find boards and tags in photographs and recordings, and write samples", add_detect,
       detect);
-  commands.add<SimulateOptions>(
-      "simulate",
-      "render photographs of a simulated robot that differs from its URDF by known errors",
-      add_simulate, simulate);
+  commands.add<SimulateOptions>("simulate",
+                                "render photographs, clouds or masks of a simulated robot that "
+                                "differs from its URDF by known "
+                                "errors",
+                                add_simulate, simulate);
   commands.add<StudyOptions>(
       "study", "calibrate simulated robots many times: how well it repeats, with how many poses",
       add_study, with_line(line, study));
