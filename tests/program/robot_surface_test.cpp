@@ -134,6 +134,15 @@ TEST_F(SimulatedRobotSurface, MasksGiveItsErrors) {
   expect_truth();
 }
 
+TEST_F(SimulatedRobotSurface, ACameraWithoutAPoseIsRefused) {
+  test::write_meshes(folder_);
+  std::ofstream(folder_ / "arm.urdf") << test::mesh_robot_urdf();
+  const Outcome lost = kinecal("simulate arm.urdf --target robot -o sim");
+  EXPECT_EQ(lost.code, 1);
+  EXPECT_THAT(lost.err, HasSubstr("the URDF has the camera 'camera' in the origin of 'base'"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "sim"));
+}
+
 TEST_F(SimulatedRobotSurface, ARobotWithoutSurfaceIsRefused) {
   const Outcome bare = kinecal("simulate " + test::source_folder() +
                                "/examples/robots/ubr1/ubr1.urdf --target robot -o sim");

@@ -275,6 +275,17 @@ void set_noise(SimulationPlan& plan) {
   return std::make_shared<const RobotSurface>(std::move(others));
 }
 
+/// @throws InputError  if the URDF does not say where the camera is: it is its base
+void check_camera_has_pose(const Robot& robot, const std::string& base, const std::string& camera) {
+  const RuntimeChain chain = make_chain(robot, base, camera, {});
+  const bool has_pose = !chain.joints.empty() || chain.tail.translation.norm() > 0.0 ||
+                        !chain.tail.rotation.isIdentity();
+  if (has_pose) return;
+  throw InputError("the URDF has the camera '" + camera + "' in the origin of '" + base +
+                   "'; a simulation needs a place from which it sees the robot: write it into the "
+                   "<origin> of the camera's joint");
+}
+
 /// The link of its own that a robot looks at: the outermost one of the arm that has a surface, else any that has.
 /// @param arm  link at its end; empty: the arm carries the camera
 /// @throws InputError  if no link with a surface moves against the camera
@@ -319,6 +330,7 @@ void set_noise(SimulationPlan& plan) {
   const auto arm = std::find_if(arms.begin(), arms.end(), moves_against_camera);
   if (link.empty() && plan.target.type != "ground" && arm != arms.end()) link = *arm;
   if (plan.surface != nullptr) {
+    check_camera_has_pose(robot, base, camera);
     plan.surface = without_housing(robot, *plan.surface, camera);
     if (!is_given) link = seen_link(robot, plan, link);
     if (plan.surface->find(link) < 0) {
