@@ -209,11 +209,12 @@ int compare(const CompareOptions& options);
 
 struct SimulateOptions {
   std::string urdf, output;
-  std::string scene;   ///< file; empty: defaults
-  std::string target;  ///< empty: the scene's
-  int poses = 0;       ///< zero: the scene's
-  int seed = 0;        ///< zero: the scene's
-  bool force = false;  ///< replace what is in the folder
+  std::string scene;                         ///< file; empty: defaults
+  std::string target;                        ///< empty: the scene's
+  std::vector<std::string> mesh_paths = {};  ///< where the URDF's packages may be
+  int poses = 0;                             ///< zero: the scene's
+  int seed = 0;                              ///< zero: the scene's
+  bool force = false;                        ///< replace what is in the folder
 };
 
 /// Photographs a simulated robot that differs from its URDF by known errors.

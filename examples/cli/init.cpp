@@ -222,7 +222,7 @@ void warn_of_idle(const InitOptions& options, InitTarget target, std::string_vie
     if (is_used || given.empty()) return;
     say(stderr, "warning: {} is not used with target {}\n", option, word);
   };
-  warn(needs_arm(target), options.arm, "--arm");
+  warn(needs_arm(target) || target == InitTarget::robot, options.arm, "--arm");
   warn(needs_camera(target), options.camera, "--camera");
   warn(needs_camera(target), options.camera_type, "--camera-type");
   warn(needs_camera(target), options.camera_name, "--robot-camera-name");

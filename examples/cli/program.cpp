@@ -394,7 +394,10 @@ void add_init(CLI::App& command, InitOptions& options) {
       .add_option("--tracker-frame", options.tracker_frame,
                   "frame_id of the points of a tracker, default: 'tracker_frame'")
       ->type_name("NAME");
-  command.add_option("--arm", options.arm, "link at the end of the arm")->type_name("LINK");
+  command
+      .add_option("--arm", options.arm,
+                  "link at the end of the arm; with target robot: frees the joints up to it")
+      ->type_name("LINK");
   command.add_option("--camera", options.camera, "the camera's optical frame")->type_name("LINK");
   command
       .add_option("--camera-type", options.camera_type,
@@ -428,9 +431,11 @@ void add_simulate(CLI::App& command, SimulateOptions& options) {
       .add_option(
           "--target", options.target,
           "checkerboard (default, apriltag if this build does not find it), apriltag, aprilgrid "
-          "(Kalibr's), ground, or leds for a session")
+          "(Kalibr's), ground, robot (its own meshes: clouds; masks if the scene's camera is a "
+          "camera2d), or leds for a session")
       ->excludes(scene)
-      ->check(one_word_of({"checkerboard", "apriltag", "aprilgrid", "ground", "leds"}));
+      ->check(one_word_of({"checkerboard", "apriltag", "aprilgrid", "ground", "robot", "leds"}));
+  add_mesh_path(command, options.mesh_paths);
   command.add_option("--poses", options.poses, "number of images, default: 30")
       ->check(CLI::Range(1, 9999))
       ->type_name("N");
@@ -1107,10 +1112,11 @@ void add_commands(Commands& commands, const kinecal::ShellCommand& line) {
   commands.add<DetectOptions>(
       "detect", "find boards and tags in photographs and recordings, and write samples", add_detect,
       detect);
-  commands.add<SimulateOptions>(
-      "simulate",
-      "render photographs of a simulated robot that differs from its URDF by known errors",
-      add_simulate, simulate);
+  commands.add<SimulateOptions>("simulate",
+                                "render photographs, clouds or masks of a simulated robot that "
+                                "differs from its URDF by known "
+                                "errors",
+                                add_simulate, simulate);
   commands.add<StudyOptions>(
       "study", "calibrate simulated robots many times: how well it repeats, with how many poses",
       add_study, with_line(line, study));

@@ -10,6 +10,7 @@
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/surface/robot_surface.hpp"
 #include "kinecal/tools/simulation/photographs.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
@@ -39,7 +40,7 @@ void remove_images(const std::filesystem::path& folder) {
 void write(const std::filesystem::path& path, PhotographFiles files) {
   OutputFolder folder(path);
   for (const auto& [name, images] :
-       {std::pair("images", &files.images), std::pair("depth", &files.depth)}) {
+       {std::pair("images", &files.images), {"depth", &files.depth}, {"masks", &files.masks}}) {
     remove_images(path / name);
     if (images->empty()) continue;
     OutputFolder(path / name).write(*images);
@@ -64,6 +65,26 @@ std::string target_of(const SimulateOptions& options) {
   return only_tags ? "apriltag" : "";
 }
 
+/// The commands that calibrate what was written of a robot that is its own target.  Meshes may be relative to its URDF.
+std::string next_of(const SimulateOptions& options, const SimulationPlan& plan) {
+  const auto file = [&](const char* name) {
+    return (std::filesystem::path(options.output) / name).string();
+  };
+  InputOptions inputs{
+      .urdf = options.urdf, .config = file("calibrate.yaml"), .samples = {file("samples.yaml")}};
+  const std::string calibrate =
+      calibrate_command(inputs).add_option("--mesh-path", options.mesh_paths).str();
+  if (plan.setup.camera.has_depth) return calibrate;
+  return ShellCommand{"kinecal", "detect"}
+             .add_option("--masks", {file("masks")})
+             .add_option("--poses", {file("poses.csv")})
+             .add_option("--camera", {file("camera.yaml")})
+             .add_option("--frame", {plan.setup.camera.frame})
+             .add_option("-o", {file("samples.yaml")})
+             .str() +
+         " && " + calibrate;
+}
+
 }  // namespace
 
 int simulate(const SimulateOptions& options) {
@@ -71,9 +92,16 @@ int simulate(const SimulateOptions& options) {
   check_folder(folder, options.force);
   const Robot robot = read_urdf(options.urdf);
   Diagnostics diagnostics;
-  const std::string target = target_of(options);
-  SimulationPlan plan = read_simulation(robot, options.scene, target,
-                                        static_cast<std::uint64_t>(options.seed), diagnostics);
+  const std::string target = target_of(options), urdf = detail::read_text_file(options.urdf);
+  const auto surface = [&] {
+    const SurfaceSource source{.urdf = options.urdf,
+                               .places = mesh_places(options.urdf, options.mesh_paths),
+                               .place = {options.scene.empty() ? "--target" : options.scene, 0}};
+    return read_surface(urdf, source, diagnostics);
+  };
+  SimulationPlan plan =
+      read_simulation(robot, options.scene, target, static_cast<std::uint64_t>(options.seed),
+                      diagnostics, nullptr, surface);
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
   note_fault_of_target(plan.target.type);
@@ -90,7 +118,7 @@ int simulate(const SimulateOptions& options) {
     });
   }
   for (const std::string& skipped : files.skipped) say(stderr, "warning: {}\n", skipped);
-  files.others.push_back({"robot.urdf", detail::read_text_file(options.urdf)});
+  files.others.push_back({"robot.urdf", urdf});
   files.others.push_back({"scene.yaml", scene_text(options, target)});
   const std::size_t images = files.images.size();
   check_folder(folder, options.force);  // one may have appeared meanwhile
@@ -100,6 +128,7 @@ int simulate(const SimulateOptions& options) {
                  : fmt::format("scene.yaml, and {} poses for a session", poses.size());
   say("{}: {} of '{}' on '{}' by '{}'; truth.yaml has {} errors of the URDF\n", folder.string(),
       what, plan.target.type, plan.target.link, plan.setup.camera.frame, plan.setup.truth.size());
+  if (plan.surface != nullptr) say("next: {}\n", next_of(options, plan));
   return kDone;
 }
 

@@ -133,6 +133,28 @@ TEST_F(SurfaceRoundsOfAnArm, LeaveTheBackgroundOut) {
   }
 }
 
+/// A wall is seen behind the arm, and in some clouds the floor beside its base.
+TEST_F(SurfaceRoundsOfAnArm, TakeABackgroundForNoFault) {
+  const std::string loss = ", loss: {type: cauchy, scale: 0.005}";
+  CalibrationSetup clouds = setup(test::mesh_config(kStart, loss, "lift, elbow"),
+                                  {.samples = 12,
+                                   .noise = 0.0002,
+                                   .background = true,
+                                   .offsets = {{"lift", 0.02}, {"elbow", -0.03}}});
+  for (const std::size_t s : {1U, 5U, 9U}) {
+    for (int i = 0; i < 100; ++i) {
+      const Vector3<double> p(-0.14 - 0.001 * (i % 60), 0.002 * (i % 50) - 0.05, 0.0);
+      clouds.samples[s].observations[0].features.push_back(
+          {.frame = "camera", .point = test::true_camera().inverse() * p});
+    }
+  }
+  const CalibratedRobot calibrated = calibrate_robot(std::move(clouds));
+  EXPECT_THAT(calibrated.judgement.reasons, IsEmpty());
+  EXPECT_THAT(calibrated.left_out_samples, IsEmpty());
+  EXPECT_NEAR(calibrated.result.table["lift"].value, 0.02, 1e-3);
+  EXPECT_NEAR(calibrated.result.table["elbow"].value, -0.03, 1e-3);
+}
+
 TEST_F(SurfaceRoundsOfAnArm, DoNotDependOnTheNumberOfThreads) {
   const auto begin_with = [&](int threads) {
     CalibrationOptions options;

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 namespace kinecal {
 namespace {
@@ -188,6 +190,60 @@ TEST(Render, RefusesACameraWithoutSize) {
   SimulatedCamera camera;
   camera.info.width = 0;
   EXPECT_THROW(Renderer{camera}, std::invalid_argument);
+}
+
+/// A ball that stands before the camera.
+Solid ball(const Vector3<double>& centre, double radius) {
+  Solid solid;
+  solid.low = centre.array() - radius;
+  solid.high = centre.array() + radius;
+  solid.cast = [=](const Vector3<double>& origin,
+                   const Vector3<double>& direction) -> std::optional<SolidHit> {
+    const Vector3<double> from = origin - centre;
+    const double a = direction.squaredNorm(), b = from.dot(direction);
+    const double inside = b * b - a * (from.squaredNorm() - radius * radius);
+    if (inside < 0.0) return std::nullopt;
+    const double at = (-b - std::sqrt(inside)) / a;
+    return SolidHit{at, (from + at * direction) / radius};
+  };
+  return solid;
+}
+
+TEST(Render, ASolidHidesWhatIsBehindItAndNothingElse) {
+  const SimulatedCamera camera = plain_camera();
+  const Renderer renderer(camera);
+  Scene scene;
+  scene.patches = {opposite({0.0, 0.0, 2.0})};
+  scene.patches.front().width = scene.patches.front().height = 10.0;
+  scene.solids = {ball({0.1, 0.0, 1.0}, 0.2)};
+  const Picture picture = renderer.render(scene, in_camera, 0);
+  const Eigen::Vector2d middle = renderer.lens().project({0.1, 0.0, 1.0});
+  const int u = static_cast<int>(std::lround(middle.x())), v = static_cast<int>(middle.y());
+  const Vector3<double> ray = renderer.lens().ray(u, v);
+  EXPECT_NEAR(picture.depth(u, v), scene.solids[0].cast(Vector3<double>::Zero(), ray)->distance,
+              1e-6);
+  EXPECT_EQ(picture.answer(u, v), 1);
+  EXPECT_NEAR(picture.depth(10, v), 2.0, 1e-6);
+  // A sphere is an ellipse in the image, whose right end is where a ray touches it.
+  const double right = std::tan(std::atan(0.1) + std::asin(0.2 / std::hypot(0.1, 1.0)));
+  const int end = static_cast<int>(renderer.lens().project({right, 0.0, 1.0}).x());
+  EXPECT_LT(picture.depth(end - 1, v), 1.1);
+  EXPECT_NEAR(picture.depth(end + 2, v), 2.0, 1e-6);
+  EXPECT_EQ(picture.answer(end, v), 0) << "grazing";
+}
+
+TEST(Render, ASolidHidesALamp) {
+  const Renderer renderer(plain_camera());
+  Scene scene;
+  add_leds(scene, "", {{0.0, 0.0, 2.0}}, {0.0, 0.0, -1.0});
+  const auto brightest = [&] {
+    const std::vector<float> pixels = renderer.render(scene, in_camera, 1).brightness.pixels;
+    return *std::max_element(pixels.begin(), pixels.end());
+  };
+  EXPECT_GT(brightest(), 250.0F);
+  scene.solids = {ball({0.0, 0.0, 1.0}, 0.1)};
+  scene.light = {.ambient = 0.1, .lamp = 0.0};
+  EXPECT_LT(brightest(), 100.0F);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "support/mesh_robot.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -148,7 +150,8 @@ TEST_F(RobotSurfaceOfFiles, TakesCollisionsOnRequestOrWhereNothingElseIs) {
   std::string urdf = test::mesh_robot_urdf();
   (void)read_with(urdf, {.geometry = SurfaceGeometry::collision});
   ASSERT_EQ(found_.errors.size(), 1U);
-  EXPECT_THAT(found_.errors[0], HasSubstr("calibrate.yaml:7: no link has a mesh in a <collision>"));
+  EXPECT_THAT(found_.errors[0],
+              HasSubstr("calibrate.yaml:7: no link has a mesh or shape in a <collision>"));
   for (std::size_t at = 0; (at = urdf.find("visual>", at)) != std::string::npos; at += 5) {
     urdf.replace(at, 7, "collision>");
   }
@@ -161,7 +164,41 @@ TEST_F(RobotSurfaceOfFiles, NamesLinksWithoutAMesh) {
   test::write_meshes(folder_);
   (void)read_with(test::mesh_robot_urdf(), {.links = {"camera", "base"}});
   EXPECT_THAT(found_.errors,
-              ElementsAre("calibrate.yaml:7: link 'camera' has no mesh in a <visual> of arm.urdf"));
+              ElementsAre("calibrate.yaml:7: link 'camera' has no mesh or shape in a <visual> of "
+                          "arm.urdf"));
+}
+
+TEST_F(RobotSurfaceOfFiles, TakesShapesWhereNoLinkHasAMesh) {
+  const auto link = [](const std::string& name, const std::string& shape) {
+    return "<link name=\"" + name + "\"><visual><origin xyz=\"0.1 0 0\"/><geometry>" + shape +
+           "</geometry></visual></link>";
+  };
+  const std::string shapes = link("base", "<box size=\"0.2 0.3 0.4\"/>") +
+                             link("rod", "<cylinder radius=\"0.05\" length=\"0.3\"/>") +
+                             link("ball", "<sphere radius=\"0.1\"/>");
+  const auto robot = [](const std::string& links) {
+    return "<robot name=\"r\">" + links + "</robot>";
+  };
+  const RobotSurface surface = read_with(robot(shapes), {});
+  EXPECT_THAT(found_.errors, IsEmpty());
+  ASSERT_EQ(surface.links().size(), 3U);
+  const std::array<Vector3<double>, 3> size = {
+      Vector3<double>(0.2, 0.3, 0.4), {0.1, 0.1, 0.3}, {0.2, 0.2, 0.2}};
+  const std::array<double, 3> volume = {0.024, std::numbers::pi * 0.05 * 0.05 * 0.3,
+                                        4.0 / 3.0 * std::numbers::pi * 1e-3};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SurfaceFacts& facts = surface.links()[i].tree.facts();
+    EXPECT_TRUE(facts.closed) << i;
+    EXPECT_EQ(facts.without_area, 0U) << i;
+    EXPECT_NEAR(facts.volume / volume[i], 1.0, 0.01) << i;  // of rings of 64 corners
+    EXPECT_LT((facts.high - facts.low - size[i]).norm(), 1e-6) << i;
+    EXPECT_LT((surface.links()[i].tree.center() - Vector3<double>(0.1, 0, 0)).norm(), 1e-6) << i;
+  }
+  test::write_meshes(folder_);
+  const std::string meshed = robot(shapes + link("arm", "<mesh filename=\"hand.stl\"/>"));
+  EXPECT_EQ(read_with(meshed, {}).links().size(), 1U) << "as without shapes";
+  EXPECT_EQ(read_with(meshed, {.links = {"rod", "arm"}}).links().size(), 2U);
+  EXPECT_THAT(found_.errors, IsEmpty());
 }
 
 TEST_F(RobotSurfaceOfFiles, NamesMeshesThatAreMissingOrNoMesh) {

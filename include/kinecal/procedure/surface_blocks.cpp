@@ -76,10 +76,11 @@ class SurfaceResolver {
     }
     if (!of.links.empty()) {
       Diagnostics ignored;
-      std::set<std::string> all;
+      std::set<std::string> all, with_shapes;
       for (const Visual& visual : visuals(input_.urdf_text, input_.urdf, ignored)) {
-        if (visual.shape == VisualShape::mesh) all.insert(visual.link);
+        (visual.shape == VisualShape::mesh ? all : with_shapes).insert(visual.link);
       }
+      if (all.empty()) all = std::move(with_shapes);
       resolved.is_whole = all.size() <= resolved.surface.links().size();
     }
     std::vector<std::string> links;

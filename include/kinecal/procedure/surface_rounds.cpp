@@ -292,10 +292,16 @@ class SurfaceFit {
       };
       const auto free = distances(end, {}), fixed = distances(held, joints);
       for (std::size_t s = 0; s < judged.size(); ++s) {
-        if (free[s].empty()) continue;
-        gains.push_back(median_of(fixed[s]) - median_of(free[s]));
-        with.insert(with.end(), free[s].begin(), free[s].end());
-        without.insert(without.end(), fixed[s].begin(), fixed[s].end());
+        std::vector<double> free_here, fixed_here;  // of points that are near the robot by either
+        for (std::size_t i = 0; i < free[s].size(); ++i) {
+          if (std::min(free[s][i], fixed[s][i]) >= gate_) continue;
+          free_here.push_back(free[s][i]);
+          fixed_here.push_back(fixed[s][i]);
+        }
+        if (free_here.empty()) continue;
+        gains.push_back(median_of(fixed_here) - median_of(free_here));
+        with.insert(with.end(), free_here.begin(), free_here.end());
+        without.insert(without.end(), fixed_here.begin(), fixed_here.end());
       }
     }
     if (gains.size() < kFewest) return std::nullopt;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -40,6 +41,17 @@ struct Meeting {
   double x = 0.0, y = 0.0;  ///< in the patch, metres
 };
 
+/// Brightness of a surface that faces the camera; 255 is white in full light.
+/// @param normal   (3) towards the camera, unit vector
+/// @param to_lamp  (3) metres
+[[nodiscard]] double lit(double albedo, const Vector3<double>& normal,
+                         const Vector3<double>& to_lamp, const Light& light) {
+  constexpr double kWhite = 255.0;
+  const double distance = to_lamp.norm(), far = distance / light.reach;
+  const double cosine = std::max(0.0, normal.dot(to_lamp) / distance);
+  return kWhite * albedo * (light.ambient + light.lamp * cosine / (1.0 + far * far));
+}
+
 /// A patch in the frame of a camera.
 struct Flat {
   const Patch* patch = nullptr;
@@ -70,13 +82,10 @@ struct Flat {
 
   /// Brightness at a place on it; 255 is white in full light.
   [[nodiscard]] double brightness(const Vector3<double>& ray, const Meeting& at) const {
-    constexpr double kWhite = 255.0, kShining = 1000.0;
+    constexpr double kShining = 1000.0;
     if (shines && is_front()) return kShining;
-    const Vector3<double> to_lamp = lamp - at.z * ray;
-    const double distance = to_lamp.norm(), side = is_front() ? -1.0 : 1.0;
-    const double cosine = std::max(0.0, side * pose.rotation.col(2).dot(to_lamp) / distance);
-    const double far = distance / light->reach;
-    return kWhite * albedo(at) * (light->ambient + light->lamp * cosine / (1.0 + far * far));
+    const double side = is_front() ? -1.0 : 1.0;
+    return lit(albedo(at), side * pose.rotation.col(2), lamp - at.z * ray, *light);
   }
 
   /// Cosine between a ray and the normal.
@@ -97,27 +106,70 @@ struct Flat {
   }
 };
 
-/// The directions in which a patch is visible; all if a part of it is beside or behind the camera,
-/// an empty window if it is entirely behind.
-Window window_of(const Flat& flat) {
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr Window kEverywhere{-kInfinite, kInfinite, -kInfinite, kInfinite};
+
+/// The directions in which the hull of corners is visible; all if a part of it is beside or behind the
+/// camera, an empty window if it is entirely behind.
+/// @param corners  (3) each, in the camera, metres
+Window window_of(std::span<const Vector3<double>> corners) {
   Window window;
-  constexpr double kNearest = 0.01, kInfinite = std::numeric_limits<double>::infinity();
-  const Window everywhere{-kInfinite, kInfinite, -kInfinite, kInfinite};
-  if (!std::isfinite(flat.patch->width) || !std::isfinite(flat.patch->height)) return everywhere;
-  int behind = 0;
-  for (const double right : {-0.5, 0.5}) {
-    for (const double down : {-0.5, 0.5}) {
-      const Vector3<double> corner =
-          flat.pose * Vector3<double>(right * flat.patch->width, down * flat.patch->height, 0.0);
-      if (corner.z() < kNearest) {
-        ++behind;
-      } else {
-        window.include(corner / corner.z());
-      }
+  constexpr double kNearest = 0.01;
+  std::size_t behind = 0;
+  for (const Vector3<double>& corner : corners) {
+    if (corner.z() < kNearest) {
+      ++behind;
+    } else {
+      window.include(corner / corner.z());
     }
   }
-  if (behind == 4) return {};
-  return behind > 0 ? everywhere : window;
+  if (behind == corners.size()) return {};
+  return behind > 0 ? kEverywhere : window;
+}
+
+Window window_of(const Flat& flat) {
+  if (!std::isfinite(flat.patch->width) || !std::isfinite(flat.patch->height)) return kEverywhere;
+  const double x = 0.5 * flat.patch->width, y = 0.5 * flat.patch->height;
+  const std::array corners = {
+      flat.pose * Vector3<double>(-x, -y, 0.0), flat.pose * Vector3<double>(x, -y, 0.0),
+      flat.pose * Vector3<double>(-x, y, 0.0), flat.pose * Vector3<double>(x, y, 0.0)};
+  return window_of(corners);
+}
+
+/// A solid in the frame of a camera.
+struct Body {
+  const Solid* solid = nullptr;
+  Pose<double> link_T_camera;
+  Window window;
+
+  /// @param ray  (3) direction (x, y, 1): the hit's distance is that along the optical axis; its normal is in the
+  ///             camera, towards it
+  [[nodiscard]] std::optional<SolidHit> meet(const Vector3<double>& ray) const {
+    const Vector3<double> direction = link_T_camera.rotation * ray;
+    auto hit = solid->cast(link_T_camera.translation, direction);
+    if (!hit) return hit;
+    const double side = hit->normal.dot(direction) > 0.0 ? -1.0 : 1.0;
+    hit->normal = side * (link_T_camera.rotation.transpose() * hit->normal);
+    return hit;
+  }
+};
+
+/// The solids of a scene in the frame of a camera.
+std::vector<Body> bodies_of(const Scene& scene, const PoseInCamera& pose_of) {
+  std::vector<Body> bodies;
+  for (const Solid& solid : scene.solids) {
+    const Pose<double> camera_T_link = pose_of(solid.link);
+    std::vector<Vector3<double>> corners;
+    for (const double x : {solid.low.x(), solid.high.x()}) {
+      for (const double y : {solid.low.y(), solid.high.y()}) {
+        for (const double z : {solid.low.z(), solid.high.z()}) {
+          corners.push_back(camera_T_link * Vector3<double>(x, y, z));
+        }
+      }
+    }
+    bodies.push_back({&solid, camera_T_link.inverse(), window_of(corners)});
+  }
+  return bodies;
 }
 
 /// The patches of a scene in the frame of a camera.
@@ -149,25 +201,30 @@ std::vector<Flat> flats_of(const Scene& scene, const PoseInCamera& pose_of, int 
 
 // Casts rays through the pixels of an image.
 
-/// The nearest point along a ray.
+/// The nearest point along a ray: on a patch or on a solid.
 struct Hit {
   int flat = -1;
+  int body = -1;
   Meeting at;
+  Vector3<double> normal = Vector3<double>::Zero();  ///< (3) of a solid, towards the camera
 };
 
-/// A part of the image, and the patches that may appear in it.
+/// A part of the image, and what may appear in it.
 struct Tile {
   int left, top, right, bottom;  ///< pixels; right and bottom are excluded
-  std::vector<int> flats;
+  std::vector<int> flats, bodies;
 };
 
 /// One rendering.
 class Casting {
  public:
-  Casting(const Image<Vector3<double>>& corners, std::vector<Flat> flats, const Scene& scene,
-          double grazing, Picture& picture)
+  Casting(const Image<Vector3<double>>& corners, std::vector<Flat> flats, std::vector<Body> bodies,
+          const Scene& scene, const Vector3<double>& lamp, double grazing, Picture& picture)
       : corners_(corners),
         flats_(std::move(flats)),
+        bodies_(std::move(bodies)),
+        light_(scene.light),
+        lamp_(lamp),
         background_(255.0 * scene.background),
         grazing_(grazing),
         picture_(picture),
@@ -189,7 +246,7 @@ class Casting {
   static constexpr int kTile = 16;  // pixels
 
   [[nodiscard]] Tile tile_at(int u, int v) const {
-    Tile tile{u, v, std::min(u + kTile, seen_.width), std::min(v + kTile, seen_.height), {}};
+    Tile tile{u, v, std::min(u + kTile, seen_.width), std::min(v + kTile, seen_.height), {}, {}};
     Window window;
     for (int y = tile.top; y <= tile.bottom; ++y) {
       for (int x = tile.left; x <= tile.right; ++x) window.include(corners_(x, y));
@@ -197,21 +254,38 @@ class Casting {
     for (std::size_t i = 0; i < flats_.size(); ++i) {
       if (flats_[i].window.overlaps(window)) tile.flats.push_back(static_cast<int>(i));
     }
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (bodies_[i].window.overlaps(window)) tile.bodies.push_back(static_cast<int>(i));
+    }
     return tile;
   }
 
-  /// The nearest patch; one mounted on another, like an LED on its body, hides it.
+  /// The nearest surface; a patch mounted on another, like an LED on its body, hides it.
   [[nodiscard]] Hit nearest(const Tile& tile, const Vector3<double>& ray) const {
     constexpr double kOnTop = 1e-4;  // metres
     Hit hit;
     for (const int i : tile.flats) {
       const auto at = flats_[static_cast<std::size_t>(i)].meet(ray);
-      if (at && (hit.flat < 0 || at->z < hit.at.z + kOnTop)) hit = {i, *at};
+      if (at && (hit.flat < 0 || at->z < hit.at.z + kOnTop)) hit = {i, -1, *at};
+    }
+    for (const int i : tile.bodies) {
+      const auto at = bodies_[static_cast<std::size_t>(i)].meet(ray);
+      if (!at || (number_of(hit) >= 0 && hit.at.z <= at->distance)) continue;
+      hit = {-1, i, {at->distance, 0.0, 0.0}, at->normal};
     }
     return hit;
   }
 
+  /// Number of what is seen: patches, then solids; negative: nothing.
+  [[nodiscard]] int number_of(const Hit& hit) const {
+    return hit.body < 0 ? hit.flat : static_cast<int>(flats_.size()) + hit.body;
+  }
+
   [[nodiscard]] double brightness(const Hit& hit, const Vector3<double>& ray) const {
+    if (hit.body >= 0) {
+      const Solid& solid = *bodies_[static_cast<std::size_t>(hit.body)].solid;
+      return lit(solid.albedo, hit.normal, lamp_ - hit.at.z * ray, light_);
+    }
     if (hit.flat < 0) return background_;
     return flats_[static_cast<std::size_t>(hit.flat)].brightness(ray, hit.at);
   }
@@ -223,21 +297,27 @@ class Casting {
                                             corners_(u, v + 1) + corners_(u + 1, v + 1));
         const Hit hit = nearest(tile, ray);
         picture_.brightness(u, v) = static_cast<float>(brightness(hit, ray));
-        seen_(u, v) = hit.flat;
-        if (hit.flat < 0) continue;
-        const Flat& flat = flats_[static_cast<std::size_t>(hit.flat)];
+        seen_(u, v) = number_of(hit);
+        if (seen_(u, v) < 0) continue;
         picture_.depth(u, v) = static_cast<float>(hit.at.z);
-        picture_.answer(u, v) = !flat.shines && flat.cosine(ray) > grazing_ ? 1 : 0;
+        picture_.answer(u, v) = measures_depth(hit, ray) ? 1 : 0;
       }
     }
   }
 
-  /// True if a pixel shows more than one brightness.
+  [[nodiscard]] bool measures_depth(const Hit& hit, const Vector3<double>& ray) const {
+    if (hit.body >= 0) return -hit.normal.dot(ray) / ray.norm() > grazing_;
+    const Flat& flat = flats_[static_cast<std::size_t>(hit.flat)];
+    return !flat.shines && flat.cosine(ray) > grazing_;
+  }
+
+  /// True if a pixel shows more than one brightness; the triangles of a solid count as one.
   [[nodiscard]] bool is_mixed(const Image<float>& centres, int u, int v) const {
     constexpr float kStep = 3.0F;  // of 255: more than light that fades
     for (int y = std::max(0, v - 1); y <= std::min(v + 1, seen_.height - 1); ++y) {
       for (int x = std::max(0, u - 1); x <= std::min(u + 1, seen_.width - 1); ++x) {
         if (seen_(x, y) != seen_(u, v)) return true;
+        if (seen_(u, v) >= static_cast<int>(flats_.size())) continue;
         if (std::abs(centres(x, y) - centres(u, v)) > kStep) return true;
       }
     }
@@ -299,6 +379,9 @@ class Casting {
 
   const Image<Vector3<double>>& corners_;
   std::vector<Flat> flats_;
+  std::vector<Body> bodies_;
+  const Light& light_;
+  Vector3<double> lamp_;  ///< in the camera, metres
   double background_, grazing_;
   Picture& picture_;
   Image<int> seen_;
@@ -327,14 +410,22 @@ void add_glow(const SimulatedLens& lens, const Flat& flat, Picture& picture) {
 }
 
 /// True if nothing hides the middle of an LED that faces the camera.
-bool is_visible(const std::vector<Flat>& flats, const Flat& led) {
+bool is_visible(const std::vector<Flat>& flats, const std::vector<Body>& bodies, const Flat& led) {
   const Vector3<double>& centre = led.pose.translation;
   constexpr double kNearest = 0.01, kOnTop = 1e-4;  // metres
   if (!led.is_front() || centre.z() < kNearest) return false;
-  return std::none_of(flats.begin(), flats.end(), [&](const Flat& flat) {
-    const auto at = flat.meet(centre / centre.z());
-    return at && at->z < centre.z() - kOnTop;
-  });
+  const Vector3<double> ray = centre / centre.z();
+  const double before = centre.z() - kOnTop;
+  const auto hides = [&](const Flat& flat) {
+    const auto at = flat.meet(ray);
+    return at && at->z < before;
+  };
+  const auto covers = [&](const Body& body) {
+    const auto at = body.meet(ray);
+    return at && at->distance < before;
+  };
+  return std::none_of(flats.begin(), flats.end(), hides) &&
+         std::none_of(bodies.begin(), bodies.end(), covers);
 }
 
 }  // namespace
@@ -360,9 +451,13 @@ Picture Renderer::render(const Scene& scene, const PoseInCamera& pose_of, int co
                   DepthImage(width, height, std::numeric_limits<float>::quiet_NaN()),
                   Image<std::uint8_t>(width, height, 0)};
   const std::vector<detail::Flat> flats = detail::flats_of(scene, pose_of, code);
-  detail::Casting(corners_, flats, scene, grazing_, picture).run();
+  const std::vector<detail::Body> bodies = detail::bodies_of(scene, pose_of);
+  detail::Casting(corners_, flats, bodies, scene, pose_of("") * scene.light.position, grazing_,
+                  picture)
+      .run();
   for (const detail::Flat& flat : flats) {
-    if (flat.shines && detail::is_visible(flats, flat)) detail::add_glow(lens_, flat, picture);
+    if (flat.shines && detail::is_visible(flats, bodies, flat))
+      detail::add_glow(lens_, flat, picture);
   }
   return picture;
 }

@@ -2,7 +2,7 @@
 //
 // A pixel is the mean over its area.  Where patches or parts of a picture meet, it uses 128 rays in
 // a lattice, no two in the same column or row, so edges are accurate to 0.02 pixels.  A lit lamp
-// glows around itself.  Tiles of the image know which patches may appear in them.
+// glows around itself.  Tiles of the image know what may appear in them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,13 +1,16 @@
-// The scene of a simulated camera: flat patches on links of the robot, and their light.
+// The scene of a simulated camera: flat patches and solids on links of the robot, and their light.
 //
-// Everything is a patch: a rectangle or ellipse with a brightness or a picture.  Six make a box, an
+// A patch is a rectangle or ellipse with a brightness or a picture.  Six make a box, an
 // infinite one the ground, a small round luminous one an LED.  A patch has the axes of an image:
-// seen from its front, x points right, y down and z away from the viewer.
+// seen from its front, x points right, y down and z away from the viewer.  A solid has any shape,
+// such as the mesh of a link.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +31,25 @@ struct Patch {
   int led = 0;                                    ///< code that lights it; 0: none
 };
 
+/// Where a ray meets a solid.
+struct SolidHit {
+  double distance = 0.0;                             ///< in lengths of the ray's direction
+  Vector3<double> normal = Vector3<double>::Zero();  ///< (3) unit vector, in the link
+};
+
+/// A body of any shape, of one brightness.
+struct Solid {
+  std::string link = {};  ///< that carries it; empty: the base
+  Vector3<double> low =
+      Vector3<double>::Zero();  ///< (3) corner of the box about it, in the link, metres
+  Vector3<double> high = Vector3<double>::Zero();  ///< (3) the other corner
+  double albedo = 0.5;                             ///< reflected share of the light, [0, 1]
+  /// The first point on a ray from an origin (3) in a direction (3), both in the link.
+  std::function<std::optional<SolidHit>(const Vector3<double>& origin,
+                                        const Vector3<double>& direction)>
+      cast = {};
+};
+
 /// Light from everywhere, and from one lamp.
 struct Light {
   double ambient = 0.4;                     ///< on every surface
@@ -39,8 +61,9 @@ struct Light {
 /// Everything there is to see.
 struct Scene {
   std::vector<Patch> patches = {};
+  std::vector<Solid> solids = {};
   Light light = {};
-  double background = 0.3;  ///< brightness where there is no patch, [0, 1]
+  double background = 0.3;  ///< brightness where there is nothing, [0, 1]
 };
 
 /// The pose of a patch that faces in a direction.

@@ -274,6 +274,7 @@ SimulatedRobot::SimulatedRobot(SimulatedSetup setup) {
   }
   state_ = std::make_unique<State>(std::move(setup));
   for (const Patch& patch : state_->setup.scene.patches) static_cast<void>(in_camera(patch.link));
+  for (const Solid& solid : state_->setup.scene.solids) static_cast<void>(in_camera(solid.link));
 }
 SimulatedRobot::~SimulatedRobot() = default;
 SimulatedRobot::SimulatedRobot(SimulatedRobot&&) noexcept = default;

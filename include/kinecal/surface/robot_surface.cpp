@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "kinecal/files/meshes/read_mesh.hpp"
@@ -20,6 +22,63 @@ namespace kinecal {
 
 namespace detail {
 namespace {
+
+/// Adds what is around a circle in the plane of x and y, by rings of corners: {radius, height} of each, from below; a ring
+/// without radius is one corner.
+void add_rings(std::span<const std::array<double, 2>> rings, Mesh& mesh) {
+  constexpr std::uint32_t kSides = 64;  // a radius of 5 cm is exact to 0.06 mm
+  const auto first = [&](std::size_t ring) { return static_cast<std::uint32_t>(ring) * kSides; };
+  for (const auto& [radius, height] : rings) {
+    for (std::uint32_t i = 0; i < kSides; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kSides;
+      mesh.vertices.push_back(static_cast<float>(radius * std::cos(angle)));
+      mesh.vertices.push_back(static_cast<float>(radius * std::sin(angle)));
+      mesh.vertices.push_back(static_cast<float>(height));
+    }
+  }
+  for (std::size_t ring = 0; ring + 1 < rings.size(); ++ring) {
+    for (std::uint32_t i = 0; i < kSides; ++i) {
+      const std::uint32_t next = (i + 1) % kSides, low = first(ring), high = first(ring + 1);
+      const bool from_point = rings[ring][0] == 0.0, to_point = rings[ring + 1][0] == 0.0;
+      // A ring that is a point has the same place many times: its first corner stands for all.
+      const std::uint32_t below = from_point ? low : low + i, above = to_point ? high : high + i;
+      if (!from_point) mesh.triangles.insert(mesh.triangles.end(), {below, low + next, above});
+      if (!to_point) {
+        mesh.triangles.insert(mesh.triangles.end(),
+                              {above, from_point ? below : low + next, high + next});
+      }
+    }
+  }
+}
+
+/// The triangles of a box, cylinder or sphere.
+[[nodiscard]] Mesh mesh_of_shape(const Visual& visual) {
+  Mesh mesh;
+  if (visual.shape == VisualShape::box) {
+    for (std::uint32_t corner = 0; corner < 8; ++corner) {
+      for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const double side = (corner >> axis & 1U) != 0 ? 0.5 : -0.5;
+        mesh.vertices.push_back(static_cast<float>(side * visual.size[axis]));
+      }
+    }
+    mesh.triangles = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                      2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  } else if (visual.shape == VisualShape::cylinder) {
+    const double r = visual.radius, z = 0.5 * visual.length;
+    add_rings(std::array<std::array<double, 2>, 4>{{{0.0, -z}, {r, -z}, {r, z}, {0.0, z}}}, mesh);
+  } else {
+    constexpr int kRings = 32;
+    std::vector<std::array<double, 2>> rings;
+    for (int i = 0; i <= kRings; ++i) {
+      const double angle = std::numbers::pi * i / kRings;
+      const bool is_pole = i == 0 || i == kRings;
+      rings.push_back(
+          {is_pole ? 0.0 : visual.radius * std::sin(angle), -visual.radius * std::cos(angle)});
+    }
+    add_rings(rings, mesh);
+  }
+  return mesh;
+}
 
 /// The triangles of a link, from all its meshes.
 struct LinkTriangles {
@@ -56,8 +115,11 @@ class SurfaceReader {
     std::vector<std::string> names;  // of links, in order of the URDF
     std::map<std::string, LinkTriangles> links;
     for (const Visual& visual : all) {
-      if (visual.shape != VisualShape::mesh || !is_needed(visual.link)) continue;
+      const bool is_mesh = visual.shape == VisualShape::mesh;
+      if (!is_needed(visual.link) || (!is_mesh && !shapes_count(all, visual.link))) continue;
       if (links.try_emplace(visual.link).second) names.push_back(visual.link);
+      if (!is_mesh) links[visual.link].add(mesh_of_shape(visual), visual);
+      if (!is_mesh) continue;
       if (const Mesh* mesh = mesh_of(visual)) links[visual.link].add(*mesh, visual);
     }
     report_without(names, element);
@@ -77,6 +139,13 @@ class SurfaceReader {
     const auto& needed = source_.links;
     return needed.empty() || std::any_of(needed.begin(), needed.end(),
                                          [&](const auto& name) { return same_frame(name, link); });
+  }
+
+  /// Whether boxes, cylinders and spheres of a link count: if no link has a mesh, or the link is listed and has none.
+  [[nodiscard]] bool shapes_count(const std::vector<Visual>& all, const std::string& link) const {
+    return std::none_of(all.begin(), all.end(), [&](const Visual& visual) {
+      return visual.shape == VisualShape::mesh && (source_.links.empty() || visual.link == link);
+    });
   }
 
   /// A mesh, read once; nullptr, and an error, if that fails.
@@ -110,13 +179,14 @@ class SurfaceReader {
       const auto has = [&](const std::string& name) { return same_frame(name, link); };
       if (std::any_of(names.begin(), names.end(), has)) continue;
       diagnostics_.error(source_.place,
-                         fmt::format("link '{}' has no mesh in a <{}> of {}{}", link, element,
-                                     source_.urdf, did_you_mean(link, names)));
+                         fmt::format("link '{}' has no mesh or shape in a <{}> of {}{}", link,
+                                     element, source_.urdf, did_you_mean(link, names)));
     }
     if (names.empty() && source_.links.empty()) {
       diagnostics_.error(source_.place,
-                         fmt::format("no link has a mesh in a <{}> of {}; the surface of the robot "
-                                     "is made of meshes",
+                         fmt::format("no link has a mesh or shape in a <{}> of {}; the surface of "
+                                     "the robot is made of <mesh>, or of <box>, <cylinder> and "
+                                     "<sphere> where no link has a <mesh>",
                                      element, source_.urdf));
     }
   }
@@ -270,19 +340,18 @@ RobotSurface read_surface(const std::string& text, const SurfaceSource& source,
   const auto of = [&](ShapeElement element) {
     return visuals(text, source.urdf, diagnostics, element);
   };
+  const auto have_meshes = [](const std::vector<Visual>& some) {
+    return std::any_of(some.begin(), some.end(),
+                       [](const Visual& visual) { return visual.shape == VisualShape::mesh; });
+  };
   std::vector<Visual> all;
   const char* element = "visual";
   if (source.geometry != SurfaceGeometry::collision) all = of(ShapeElement::visual);
-  const bool has_mesh = std::any_of(all.begin(), all.end(), [](const Visual& visual) {
-    return visual.shape == VisualShape::mesh;
-  });
   if (source.geometry == SurfaceGeometry::collision ||
-      (source.geometry == SurfaceGeometry::automatic && !has_mesh)) {
+      (source.geometry == SurfaceGeometry::automatic && !have_meshes(all))) {
     std::vector<Visual> others = of(ShapeElement::collision);
-    const bool have = std::any_of(others.begin(), others.end(), [](const Visual& visual) {
-      return visual.shape == VisualShape::mesh;
-    });
-    if (have || source.geometry == SurfaceGeometry::collision) {
+    const bool have_more = have_meshes(others) || (all.empty() && !others.empty());
+    if (have_more || source.geometry == SurfaceGeometry::collision) {
       element = "collision";
       all = std::move(others);
     }

@@ -1,4 +1,5 @@
-// The surface of a robot: the meshes of its links as trees of triangles, each in the frame of its link.
+// The surface of a robot: the meshes of its links as trees of triangles, each in the frame of its link.  Boxes, cylinders
+// and spheres count where no link has a mesh, and of a link that is listed and has none.
 //
 //   const RobotSurface surface = read_surface(urdf_text, {.urdf = "robot.urdf", .places = mesh_places("robot.urdf")}, found);
 //   const SurfaceHit hit = surface.closest(base_T_links, p_base);
@@ -20,7 +21,7 @@ namespace kinecal {
 
 /// The meshes of a URDF that are the surface.
 enum class SurfaceGeometry {
-  automatic,  ///< visual, or collision where no link has a visual mesh
+  automatic,  ///< visual, or collision where only that has meshes, or shapes
   visual,     ///< `geometry: visual`
   collision   ///< `geometry: collision`
 };
@@ -91,7 +92,7 @@ struct SurfaceSource {
 
 /// The surface of a URDF's links.
 /// @param text         the URDF
-/// @param diagnostics  errors: a link without a mesh, a mesh that is missing, cannot be read or has an impossible size;
+/// @param diagnostics  errors: a link without a mesh or shape, a mesh that is missing, cannot be read or has an impossible size;
 ///                     notes: what is not closed, inside out or without area
 [[nodiscard]] RobotSurface read_surface(const std::string& text, const SurfaceSource& source,
                                         Diagnostics& diagnostics);

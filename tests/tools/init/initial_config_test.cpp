@@ -339,6 +339,24 @@ TEST(InitialConfigNames, AreQuotedWhereYamlWouldMistakeThem) {
   EXPECT_EQ(yaml["models"][0]["frame"].as<std::string>(), "off");
 }
 
+TEST(InitialConfigOfTheRobotItself, FreesTheJointsOfAGivenArm) {
+  const Robot fetch = read_urdf(test::source_folder() + "/examples/robots/fetch/fetch.urdf");
+  InitAnswers answers{.target = InitTarget::robot};
+  answers.base = "base_link";
+  answers.camera = "head_camera_rgb_optical_frame";
+  EXPECT_THAT(initial_config(fetch, answers), testing::Not(HasSubstr("- elbow_flex_joint")));
+  answers.arm = "gripper_link";
+  const std::string text = initial_config(fetch, answers);
+  for (const std::string free :
+       {"- elbow_flex_joint", "- wrist_roll_joint", "name: head_pan_joint,",
+        "name: head_camera_rgb_joint,", "type: chain3d_to_mesh"}) {
+    EXPECT_THAT(text, HasSubstr(free));
+  }
+  EXPECT_THAT(
+      text,
+      testing::Not(HasSubstr("- shoulder_pan_joint")));  // the frame of the head has its rotation
+}
+
 TEST(InitialConfigOfTheRobotItself, FreesTheCameraOnly) {
   const Robot robot = read_urdf(test::source_folder() + "/examples/robots/fetch/fetch.urdf");
   for (const auto& [type, block] :

@@ -60,6 +60,40 @@ TEST(SimulationPlan, EachShippedRobotWithACameraHasOne) {
   }
 }
 
+TEST(SimulationPlan, ARobotThatIsItsOwnTargetNeedsASurfaceThatMovesAgainstItsCamera) {
+  const Robot robot = shipped("robots/fetch/fetch.urdf");
+  Diagnostics diagnostics;
+  const auto plan_with = [&](const RobotSurface& surface) {
+    return read_simulation(robot, "", "robot", 1, diagnostics, nullptr, [&] { return surface; });
+  };
+  const auto error_of = [&](const auto& make) -> std::string {
+    try {
+      static_cast<void>(make());
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(error_of([&] { return read_simulation(robot, "", "robot", 1, diagnostics); }),
+              HasSubstr("target 'robot' is simulated by 'kinecal simulate'"));
+  const TriangleTree tree({{-0.1, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0.1}}, {{0, 1, 2}});
+  EXPECT_THAT(error_of([&] {
+                return plan_with(RobotSurface({{"head_tilt_link", tree}}));
+              }),
+              HasSubstr("no link that moves against the camera"));
+  // The camera looks out of its own housing, and at the outermost link of the arm that has a surface.
+  const RobotSurface surface({{"head_camera_rgb_frame", tree},
+                              {"base_link", tree},
+                              {"forearm_roll_link", tree},
+                              {"elbow_flex_link", tree}});
+  const SimulationPlan plan = plan_with(surface);
+  EXPECT_EQ(plan.target.link, "forearm_roll_link");
+  EXPECT_EQ(plan.setup.scene.solids.size(), 3U);
+  EXPECT_EQ(plan.camera_type, "camera3d");
+  EXPECT_THAT(plan.config, AllOf(HasSubstr("chain3d_to_mesh"), HasSubstr("- elbow_flex_joint")));
+  EXPECT_GE(plan.setup.truth.find("elbow_flex_joint"), 0);
+}
+
 TEST(SimulationPlan, ACameraOnTheHandLooksAtABoardThatStands) {
   const SimulationPlan plan = plan_of(shipped("robots/panda/panda.urdf"), "");
   EXPECT_EQ(plan.target.link, "panda_link0");

@@ -260,6 +260,23 @@ void add_mounted_camera(InitPlan& plan, const InitAnswers& answers, const std::s
   if (!determined) keep_near_zero(plan, mount, why);
 }
 
+/// Frees the offsets between the camera and what it sees on the arm, and the frame of the part that carries it.
+/// @param head  moves the camera and not the arm
+/// @returns     whether the samples determine the frame of the mount
+bool free_arm_and_head(InitPlan& plan, const Robot& robot, const InitAnswers& answers,
+                       const std::vector<ChainJoint>& head, const std::string& mount) {
+  const std::string head_frame = head.empty() ? mount : head.front().name;
+  MeasuredTarget seen = seen_by_camera(answers, answers.arm);
+  if (!is_board(answers.target)) seen.target_frame.clear();
+  std::vector<std::string> frames = {head_frame};
+  if (mount != head_frame) frames.push_back(mount);
+  const bool determined = free_offsets(plan, robot, seen, frames);
+  if (!head.empty()) {
+    free_frame(plan, head_frame, "How the part that carries the camera is mounted on the robot.");
+  }
+  return determined;
+}
+
 /// LEDs or a board on the gripper, seen by a camera that does not move with it.
 [[nodiscard]] InitPlan plan_hand_eye(const Robot& robot, const InitAnswers& answers) {
   InitPlan plan;
@@ -280,16 +297,8 @@ void add_mounted_camera(InitPlan& plan, const InitAnswers& answers, const std::s
   add_camera_model(plan, answers);
 
   const std::string mount = require_mount(robot, answers, {answers.base, answers.arm}).name;
-  const std::string head_frame = head.empty() ? mount : head.front().name;
   if (board) add_board(plan, answers.target_frame, answers.arm);
-  MeasuredTarget seen = seen_by_camera(answers, answers.arm);
-  if (!board) seen.target_frame.clear();
-  std::vector<std::string> frames = {head_frame};
-  if (mount != head_frame) frames.push_back(mount);
-  const bool determined = free_offsets(plan, robot, seen, frames);
-  if (!head.empty()) {
-    free_frame(plan, head_frame, "How the part that carries the camera is mounted on the robot.");
-  }
+  const bool determined = free_arm_and_head(plan, robot, answers, head, mount);
   add_mounted_camera(plan, answers, mount, determined,
                      "The joints cannot show all of the camera's frame beside the others: this "
                      "block keeps its correction small.");
@@ -401,17 +410,34 @@ void add_mounted_camera(InitPlan& plan, const InitAnswers& answers, const std::s
   return plan;
 }
 
-/// The robot's own surface: where a camera stands that sees it.
+/// The robot's own surface: where a camera stands that sees it; with an arm, also its joints.
 [[nodiscard]] InitPlan plan_robot(const Robot& robot, const InitAnswers& answers) {
   InitPlan plan;
   const bool depth = answers.camera_type == "camera3d";
   add_camera_model(plan, answers);
-  const std::string mount = require_mount(robot, answers, {answers.base}).name;
-  plan.left_out.push_back({"all joints",
-                           "Errors of meshes and depth look like errors of their zeros; free those "
-                           "with which 'kinecal calibrate' finds samples that had no say nearer"});
+  std::vector<std::string> others = {answers.base};
+  if (!answers.arm.empty()) others.push_back(answers.arm);
+  const std::string mount = require_mount(robot, answers, others).name;
+  bool determined = true;
+  if (answers.arm.empty()) {
+    plan.left_out.push_back(
+        {"all joints",
+         "Errors of meshes and depth look like errors of their zeros; free those with which "
+         "'kinecal calibrate' finds samples that had no say nearer"});
+  } else {
+    std::vector<ChainJoint> arm = movers(robot, answers.base, answers.arm);
+    std::vector<ChainJoint> head = movers(robot, answers.base, answers.camera);
+    remove_common(arm, head);
+    if (arm.empty()) head.clear();  // the arm carries the camera: its own joints are the arm's
+    determined = free_arm_and_head(plan, robot, answers, head, mount);
+  }
   free_frame(plan, mount,
              "How the camera is mounted.  Where the URDF has zeros, kinecal searches for it.");
+  if (!determined) {
+    keep_near_zero(plan, mount,
+                   "The joints cannot show all of the camera's frame beside the others: this block "
+                   "keeps its correction small.");
+  }
   InitEntry block{"", "surface", {}};
   if (depth) {
     block.why =

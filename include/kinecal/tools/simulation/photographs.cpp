@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -12,7 +14,9 @@
 #include "kinecal/files/cameras/camera_info.hpp"
 #include "kinecal/files/images/png_bytes.hpp"
 #include "kinecal/files/poses/poses.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
+#include "kinecal/surface/outline.hpp"
 #include "kinecal/tools/simulation/place_target.ipp"
 
 namespace kinecal {
@@ -77,6 +81,53 @@ namespace {
   return text;
 }
 
+/// The sample of a cloud: of its points those of every n-th column and row, as calibrations take few thousand.
+[[nodiscard]] Sample cloud_sample(const SimulationPlan& plan, const View& view,
+                                  const MeasuredJoints& joints) {
+  constexpr double kPixels = 10000.0;
+  const PointCloud& points = view.points;
+  const int step = std::max(
+      1, static_cast<int>(std::ceil(std::sqrt(double(points.width) * points.height / kPixels))));
+  Sample sample;
+  sample.joint_names = joints.names;
+  sample.joint_positions = joints.positions;
+  Observation seen{plan.setup.camera_name, {}, view.camera};
+  for (int v = step / 2; v < points.height; v += step) {
+    for (int u = step / 2; u < points.width; u += step) {
+      const Vector3<double> p = points(u, v).cast<double>();
+      if (p.allFinite()) seen.features.push_back({.frame = view.frame, .point = p});
+    }
+  }
+  sample.observations.push_back(std::move(seen));
+  return sample;
+}
+
+/// The robot in the image of a camera.
+[[nodiscard]] GrayImage mask_of(const Outliner& outliner, const RobotSurface& surface,
+                                const SimulatedRobot& robot) {
+  std::vector<Pose<double>> links;
+  for (const SurfaceLink& link : surface.links()) links.push_back(robot.in_camera(link.name));
+  const SimulatedLens& lens = robot.lens();
+  const auto pixel_of = [&](const Vector3<double>& p) -> Eigen::Vector2d {
+    if (p.z() > 0.0) return lens.project(p);
+    return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  };
+  const CameraInfo& info = robot.setup().camera.info;
+  return outliner.mask(links, pixel_of, info.width, info.height);
+}
+
+/// Why a mask shows too little of the robot; empty if it does not.
+[[nodiscard]] std::string too_little_of_robot(const GrayImage& mask) {
+  constexpr double kLeast = 0.01;
+  const auto robot = std::count(mask.pixels.begin(), mask.pixels.end(), 255);
+  const double share = static_cast<double>(robot) / static_cast<double>(mask.pixels.size());
+  return share >= kLeast ? ""
+                         : fmt::format(
+                               "the robot is {:.1f} % of the image; at least {:.0f} % are "
+                               "needed",
+                               100.0 * share, 100.0 * kLeast);
+}
+
 /// Rows of a table: the name of an image and joint positions.
 class PoseTable {
  public:
@@ -109,11 +160,13 @@ std::vector<OutputFile> files_of(const SimulationPlan& plan,
   for (const JointTarget& pose : poses) listed.push_back({pose.names, pose.positions, {}});
   std::ostringstream list;
   write_poses_yaml(list, listed);
-  return {{"truth.yaml", truth},
-          {"poses.yaml", list.str()},
-          {"camera.yaml", to_camera_info_yaml(plan.setup.camera.info, plan.setup.camera_name)},
-          {"calibrate.yaml", plan.config},
-          {"capture.yaml", detail::finder_text(plan)}};
+  std::vector<OutputFile> files = {
+      {"truth.yaml", truth},
+      {"poses.yaml", list.str()},
+      {"camera.yaml", to_camera_info_yaml(plan.setup.camera.info, plan.setup.camera_name)},
+      {"calibrate.yaml", plan.config}};
+  if (plan.surface == nullptr) files.push_back({"capture.yaml", detail::finder_text(plan)});
+  return files;
 }
 
 PhotographFiles take_photographs(const SimulationPlan& plan, const std::vector<JointTarget>& poses,
@@ -121,16 +174,30 @@ PhotographFiles take_photographs(const SimulationPlan& plan, const std::vector<J
   SimulatedRobot robot(plan.setup);
   PhotographFiles files;
   detail::PoseTable table;
+  const RobotSurface none, &surface = plan.surface != nullptr ? *plan.surface : none;
+  const Outliner outliner(surface);
+  std::vector<Sample> clouds;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (progress) progress(i);
     const std::string name = fmt::format("{:04d}.png", i + 1);
     try {
       robot.move(poses[i]);
       robot.wait_for_rest();
+      GrayImage mask;
+      if (plan.surface != nullptr) {
+        mask = detail::mask_of(outliner, surface, robot);
+        const std::string why = detail::too_little_of_robot(mask);
+        if (!why.empty()) throw PoseError(why);
+      }
       const View view = robot.next_view(robot.now());
-      table.add(name, robot.next_joints(view.stamp));
+      const MeasuredJoints joints = robot.next_joints(view.stamp);
+      table.add(name, joints);
       files.images.push_back({name, detail::png_bytes(view.image)});
+      if (plan.surface != nullptr && view.points.empty()) {
+        files.masks.push_back({name, detail::png_bytes(mask)});
+      }
       if (view.points.empty()) continue;
+      if (plan.surface != nullptr) clouds.push_back(detail::cloud_sample(plan, view, joints));
       files.depth.push_back({name, detail::png_bytes(detail::millimetres_of(view.points))});
     } catch (const PoseError& e) {
       files.skipped.push_back(fmt::format("pose {}: {}", i + 1, e.what()));
@@ -145,6 +212,11 @@ PhotographFiles take_photographs(const SimulationPlan& plan, const std::vector<J
   }
   files.others = files_of(plan, poses);
   files.others.push_back({"poses.csv", table.text()});
+  if (!clouds.empty()) {
+    std::ostringstream text;
+    write_samples(text, clouds);
+    files.others.push_back({"samples.yaml", text.str()});
+  }
   return files;
 }
 

@@ -9,6 +9,11 @@
 //   capture.yaml          the finder of the target, as robot_calibration has it
 //   poses.yaml            the poses, as robot_calibration has them
 //   truth.yaml            parameter: value, as calibration_<date>.yaml
+//
+// Of target robot, instead of capture.yaml:
+//
+//   samples.yaml          of a camera3d: clouds, background included
+//   masks/0001.png ...    of a camera2d: 255 where the robot is, else 0
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -25,6 +30,7 @@ namespace kinecal {
 struct PhotographFiles {
   std::vector<OutputFile> images;         ///< for images/
   std::vector<OutputFile> depth;          ///< for depth/; none of a camera without depth
+  std::vector<OutputFile> masks;          ///< for masks/; only of target robot without depth
   std::vector<OutputFile> others;         ///< tables and configurations
   std::vector<std::string> skipped = {};  ///< poses without an image, and why
 };

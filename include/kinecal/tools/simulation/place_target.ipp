@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/study/tag_grid.hpp"
+#include "kinecal/surface/robot_surface.hpp"
 #include "kinecal/tools/simulation/simulation_plan.hpp"
 
 namespace kinecal::detail {
@@ -84,6 +86,23 @@ inline void set_middle(SimulatedTarget& target, const Pose<double>& link_T_middl
   return points;
 }
 
+/// Points of a link's surface that a camera should see, metres, in the link: the corners of a box half as large as that about
+/// it.  The link and the others of the robot may be larger than the image.
+[[nodiscard]] inline std::vector<Vector3<double>> points_on(const RobotSurface& surface,
+                                                            const std::string& link) {
+  const SurfaceLink& of = surface.links().at(static_cast<std::size_t>(surface.find(link)));
+  const Vector3<double> half = 0.25 * (of.tree.facts().high - of.tree.facts().low);
+  std::vector<Vector3<double>> points;
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-1.0, 1.0}) {
+      for (const double z : {-1.0, 1.0}) {
+        points.push_back(of.tree.center() + half.cwiseProduct(Vector3<double>(x, y, z)));
+      }
+    }
+  }
+  return points;
+}
+
 /// Links may be a little below the floor, metres.
 inline constexpr double kBelowFloor = 0.01;
 
@@ -98,8 +117,9 @@ inline void set_goal(SimulationPlan& plan, double scale = 1.0) {
   goal.info = camera.info;
   goal.image = camera.image;
   goal.target = target.link;
-  goal.points = points_of(target);
-  goal.front = -middle_of(target).rotation.col(2);
+  const bool is_robot = target.type == "robot";
+  goal.points = is_robot ? points_on(*plan.surface, target.link) : points_of(target);
+  if (!is_robot) goal.front = -middle_of(target).rotation.col(2);
   constexpr double kNear = 0.2, kFar = 2.0, kFarFloor = 3.0, kGap = 0.05;  // metres
   constexpr double kBoard = 0.35, kLeds = 0.03;                            // of the image's width
   goal.nearest = camera.has_depth ? camera.nearest + kGap : scale * kNear;
@@ -180,7 +200,7 @@ inline void set_goal(SimulationPlan& plan, double scale = 1.0) {
 inline void place_target(SimulationPlan& plan) {
   const double given = plan.target.size;
   complete(plan.target);
-  if (plan.target.has_pose) {
+  if (plan.target.has_pose || plan.target.type == "robot") {
     set_goal(plan);
     return;
   }
@@ -199,6 +219,22 @@ inline void place_target(SimulationPlan& plan) {
                    "[r, p, y]}");
 }
 
+/// Adds the robot's own surface.
+inline void add_robot(Scene& scene, const std::shared_ptr<const RobotSurface>& surface) {
+  for (const SurfaceLink& link : surface->links()) {
+    Solid& solid = scene.solids.emplace_back();
+    solid.link = link.name;
+    solid.low = link.tree.facts().low;
+    solid.high = link.tree.facts().high;
+    solid.cast = [surface, &link](const Vector3<double>& origin,
+                                  const Vector3<double>& direction) -> std::optional<SolidHit> {
+      const auto hit = link.tree.cast(origin, direction);
+      if (!hit) return std::nullopt;
+      return SolidHit{hit->distance, hit->normal};
+    };
+  }
+}
+
 /// Adds the visible objects: target, floor and wall.
 inline void furnish(SimulationPlan& plan) {
   SimulatedTarget& target = plan.target;
@@ -210,6 +246,7 @@ inline void furnish(SimulationPlan& plan) {
                            .height = kInfinite,
                            .albedo = 0.6});
   if (target.type == "ground") return;
+  if (target.type == "robot") return add_robot(scene, plan.surface);
   double width = 0.0, height = 0.0;
   const Pose<double> middle_T_link = middle_of(target).inverse();
   for (const Vector3<double>& point : plan.goal.points) {

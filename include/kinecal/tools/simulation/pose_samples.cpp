@@ -200,10 +200,11 @@ class PoseSampling {
 
 PoseSamples pose_samples(const SimulationPlan& plan, const Config& config,
                          const std::vector<CapturePose>& poses) {
-  if (plan.target.type == "ground") {
-    throw InputError(
-        "a study has no floor as its target; choose leds, checkerboard, apriltag or "
-        "aprilgrid");
+  if (plan.target.type == "ground" || plan.target.type == "robot") {
+    throw InputError("a study has no " +
+                     std::string(plan.target.type == "ground" ? "floor" : "robot") +
+                     " as its target; choose leds, checkerboard, apriltag or "
+                     "aprilgrid");
   }
   const detail::PoseSampling sampling(plan, config);
   PoseSamples result;

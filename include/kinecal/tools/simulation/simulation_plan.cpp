@@ -106,7 +106,7 @@ void read_faults(ConfigMap& map, Faults& faults) {
 //     blur: 0.6 (pixels), exposure: 1.0, noise: 1.5 (of 255), nearest: 0.3, farthest: 5.0 (metres)
 //     depth_noise: 0.001 (at 1 m), disparity_step: 0.125 (pixels), holes: true
 //   target:
-//     type: leds | checkerboard | apriltag | ground, link: LINK, xyz: [x, y, z], rpy: [r, p, y]
+//     type: leds | checkerboard | apriltag | aprilgrid | ground | robot, link: LINK, xyz: [x, y, z], rpy: [r, p, y]
 //     columns: 6, rows: 5, size: 0.025, leds: [[x, y, z], ...]
 //   errors:                         each between half of it and all of it, with either sign
 //     joint: 0.05, sliding: 0.01, position: 0.01, rotation: 0.02, intrinsics: 0.01, z_offset:
@@ -185,8 +185,9 @@ void read_camera(ConfigMap& map, SimulationPlan& plan) {
 
 void read_target(ConfigMap& map, SimulationPlan& plan) {
   SimulatedTarget& target = plan.target;
-  target.type = read_word(map, "type", {"leds", "checkerboard", "apriltag", "aprilgrid", "ground"})
-                    .value_or(target.type);
+  target.type =
+      read_word(map, "type", {"leds", "checkerboard", "apriltag", "aprilgrid", "ground", "robot"})
+          .value_or(target.type);
   target.link = read_link(map, "link", plan.setup.robot).value_or("");
   target.columns = map.count("columns", target.columns);
   target.rows = map.count("rows", target.rows);
@@ -256,6 +257,55 @@ void set_noise(SimulationPlan& plan) {
   return make_chain(robot, a, b, {}).joints.empty();
 }
 
+/// Leaves out the links that the camera looks out of: those fixed to it whose box it is in; and those of another base.
+[[nodiscard]] std::shared_ptr<const RobotSurface> without_housing(const Robot& robot,
+                                                                  const RobotSurface& surface,
+                                                                  const std::string& camera) {
+  constexpr double kMargin = 0.02;  // metres
+  std::vector<SurfaceLink> others;
+  for (const SurfaceLink& link : surface.links()) {
+    if (propose_base(robot, link.name) != propose_base(robot, camera)) continue;
+    const RuntimeChain chain = make_chain(robot, link.name, camera, {});
+    const Vector3<double>& eye = chain.tail.translation;
+    const SurfaceFacts& facts = link.tree.facts();
+    const bool is_inside = ((eye - facts.low).array() > -kMargin).all() &&
+                           ((facts.high - eye).array() > -kMargin).all();
+    if (!chain.joints.empty() || !is_inside) others.push_back(link);
+  }
+  return std::make_shared<const RobotSurface>(std::move(others));
+}
+
+/// @throws InputError  if the URDF does not say where the camera is: it is its base
+void check_camera_has_pose(const Robot& robot, const std::string& base, const std::string& camera) {
+  const RuntimeChain chain = make_chain(robot, base, camera, {});
+  const bool has_pose = !chain.joints.empty() || chain.tail.translation.norm() > 0.0 ||
+                        !chain.tail.rotation.isIdentity();
+  if (has_pose) return;
+  throw InputError("the URDF has the camera '" + camera + "' in the origin of '" + base +
+                   "'; a simulation needs a place from which it sees the robot: write it into the "
+                   "<origin> of the camera's joint");
+}
+
+/// The link of its own that a robot looks at: the outermost one of the arm that has a surface, else any that has.
+/// @param arm  link at its end; empty: the arm carries the camera
+/// @throws InputError  if no link with a surface moves against the camera
+[[nodiscard]] std::string seen_link(const Robot& robot, const SimulationPlan& plan,
+                                    const std::string& arm) {
+  const std::string& camera = plan.setup.camera.frame;
+  std::vector<std::string> candidates;
+  if (!arm.empty()) candidates.push_back(arm);
+  if (!arm.empty()) {
+    for (const Joint* joint : joints_to_root(robot, arm)) candidates.push_back(joint->parent);
+  }
+  for (const SurfaceLink& link : plan.surface->links()) candidates.push_back(link.name);
+  for (const std::string& link : candidates) {
+    if (plan.surface->find(link) >= 0 && !is_rigid(robot, link, camera)) return link;
+  }
+  throw InputError(
+      "no link that moves against the camera '" + camera +
+      "' has a mesh or shape; name another camera in the scene: camera: {frame: LINK}");
+}
+
 /// The answers for `kinecal init` that lead to this simulation.
 [[nodiscard]] InitAnswers answers_of(const Robot& robot, SimulationPlan& plan) {
   InitAnswers answers;
@@ -273,11 +323,21 @@ void set_noise(SimulationPlan& plan) {
   }
   const std::string base = propose_base(robot, camera);
   std::string& link = plan.target.link;
+  const bool is_given = !link.empty();
   const auto moves_against_camera = [&](const std::string& arm) {
     return propose_base(robot, arm) == base && !is_rigid(robot, arm, camera);
   };
   const auto arm = std::find_if(arms.begin(), arms.end(), moves_against_camera);
   if (link.empty() && plan.target.type != "ground" && arm != arms.end()) link = *arm;
+  if (plan.surface != nullptr) {
+    check_camera_has_pose(robot, base, camera);
+    plan.surface = without_housing(robot, *plan.surface, camera);
+    if (!is_given) link = seen_link(robot, plan, link);
+    if (plan.surface->find(link) < 0) {
+      throw InputError("target: link '" + link + "' has no mesh or shape that the camera '" +
+                       camera + "' could see");
+    }
+  }
   if (link.empty()) link = base;
   if (!robot.has_link(link)) {
     throw InputError("no link '" + link + "' in the URDF" + did_you_mean(link, robot.link_names()));
@@ -286,8 +346,9 @@ void set_noise(SimulationPlan& plan) {
   answers.target = stands ? InitTarget::world_checkerboard : InitTarget::checkerboard;
   if (plan.target.type == "leds") answers.target = InitTarget::leds;
   if (plan.target.type == "ground") answers.target = InitTarget::ground;
-  if (stands) link = base;
-  answers.arm = link;
+  if (plan.target.type == "robot") answers.target = InitTarget::robot;
+  answers.arm = stands ? base : link;
+  if (plan.target.type != "robot") link = answers.arm;
   answers.base = base;
   answers.camera = camera;
   if (plan.camera_type.empty()) {
@@ -370,7 +431,8 @@ void add_target_frame(const StepConfig& step, SimulationPlan& plan) {
 
 SimulationPlan read_simulation(const Robot& robot, const std::string& path,
                                const std::string& target, std::uint64_t seed,
-                               Diagnostics& diagnostics, const Config* config) {
+                               Diagnostics& diagnostics, const Config* config,
+                               const std::function<RobotSurface()>& surface) {
   SimulationPlan plan;
   plan.setup.robot = robot;
   plan.setup.camera.frame.clear();
@@ -379,6 +441,12 @@ SimulationPlan read_simulation(const Robot& robot, const std::string& path,
   detail::set_noise(plan);
   if (!target.empty()) plan.target.type = target;
   if (seed != 0) plan.setup.seed = seed;
+  if (plan.target.type == "robot" && !surface) {
+    throw InputError(
+        "target 'robot' is simulated by 'kinecal simulate', which writes clouds or masks; choose "
+        "leds, a board or tags here");
+  }
+  if (plan.target.type == "robot") plan.surface = std::make_shared<const RobotSurface>(surface());
   if (!diagnostics.errors.empty()) return plan;
   if (config != nullptr && !config->steps.empty()) detail::take_models(*config, plan);
   const InitAnswers answers = detail::answers_of(robot, plan);

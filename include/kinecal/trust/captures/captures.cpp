@@ -24,14 +24,19 @@ namespace {
 //
 // A sample with a pose of its own hardly moves the fit of the others; and single corners at the border of a wide lens are
 // often off by many times the noise, so that a fit without these views would be a worse one.  Of the thousands of points of a
-// cloud some are always far off: a cable, an edge.  So such a sample is judged by the root mean square of its residuals.
+// cloud some are always far off: a cable, an edge.  So such a sample is judged by the root mean square of its residuals.  The
+// floor under a robot may be many times farther than the noise, and is no fault of the cloud: no point counts more than six
+// times the noise.
+
+/// Whether a term compares points or edges with the surface of the robot.
+[[nodiscard]] bool is_of_surface(const AnyProblem& problem, int term) {
+  const std::string& type = problem.term(term).options.type;
+  return type == PointToMesh::kType || type == PointToOutline::kType;
+}
 
 [[nodiscard]] bool judges_wholes(const AnyProblem& problem) {
   bool clouds = false;
-  for (int t = 0; t < problem.num_terms(); ++t) {
-    const std::string& type = problem.term(t).options.type;
-    clouds = clouds || type == PointToMesh::kType || type == PointToOutline::kType;
-  }
+  for (int t = 0; t < problem.num_terms(); ++t) clouds = clouds || is_of_surface(problem, t);
   return clouds || !problem.sample_poses().empty();
 }
 
@@ -39,16 +44,19 @@ namespace {
 /// @param sigma  noise of a weighted residual, by term
 [[nodiscard]] std::vector<bool> far_samples(const AnyProblem& problem, const LinearFit& fit,
                                             const std::vector<double>& sigma) {
-  constexpr double kTimes = 4.0, kRounding = 1e-9;
+  constexpr double kTimes = 4.0, kRounding = 1e-9, kMost = 6.0;
   const auto samples = static_cast<std::size_t>(problem.num_samples());
   std::vector<double> sum(samples, 0.0), left(samples, 0.0), typical;
   for (const RowBlock& block : fit.blocks) {
     const auto s = static_cast<std::size_t>(block.sample);
     const double noise = std::max(kRounding, sigma[static_cast<std::size_t>(block.term)]);
-    sum[s] += fit.residual.segment(block.first, block.size)
-                  .cwiseAbs2()
-                  .dot(fit.loss.segment(block.first, block.size)) /
-              (noise * noise);
+    const double most = is_of_surface(problem, block.term) ? kMost * kMost : HUGE_VAL;
+    sum[s] += (fit.residual.segment(block.first, block.size)
+                   .cwiseAbs2()
+                   .cwiseProduct(fit.loss.segment(block.first, block.size)) /
+               (noise * noise))
+                  .cwiseMin(most)
+                  .sum();
     left[s] += static_cast<double>(block.size) - fit.used.segment(block.first, block.size).sum();
   }
   for (std::size_t s = 0; s < samples; ++s) {
