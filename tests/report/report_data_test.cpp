@@ -73,7 +73,8 @@ TEST_F(ReportOfMasks, OutlinesAreAtTheirResidualsFromTheMaskBeforeAndAfter) {
 }
 
 TEST_F(ReportOfMasks, APoseThatNobodyGaveHasNoBefore) {
-  for (const ReportedFeature& feature : data_of(calibrated("")).blocks.at(0).features) {
+  const ReportData data = data_of(calibrated(""));
+  for (const ReportedFeature& feature : data.blocks.at(0).features) {
     ASSERT_FALSE(feature.outline_before);
     ASSERT_TRUE(feature.outline_after);
   }
