@@ -69,30 +69,6 @@ void assemble_new(const StoredResult& result, NewSamples& fresh) {
   fresh.misfit = undefined ? std::numeric_limits<double>::infinity() : sum / std::max(1.0, rows);
 }
 
-/// Takes the result off what was recorded with it in force: offsets in <calibration rising>, and cameras.
-/// @returns  false if it changes nothing
-bool take_off(const StoredResult& result, const AnyProblem& problem, std::vector<Sample>& samples) {
-  bool changes = !result.added_offsets.empty();
-  add_rising(result.added_offsets, samples, -1.0);
-  for (const MountedSensor& sensor : problem.sensors()) {
-    const Mount& mount = sensor.mount();
-    const auto inverse = [&](const char* part) {
-      const auto value = result.values.find(parameter_name(mount.parameter_prefix(), part));
-      return value == result.values.end() ? 0.0 : 1.0 / (1.0 + value->second) - 1.0;
-    };
-    const double fx = inverse("fx"), fy = inverse("fy"), cx = inverse("cx"), cy = inverse("cy");
-    if (fx == 0.0 && fy == 0.0 && cx == 0.0 && cy == 0.0) continue;
-    for (Sample& sample : samples) {
-      for (Observation& seen : sample.observations) {
-        if (seen.sensor != mount.name || !seen.camera) continue;
-        seen.camera = calibrated_camera_info(*seen.camera, fx, fy, cx, cy);
-        changes = true;
-      }
-    }
-  }
-  return changes;
-}
-
 /// How well new samples are explained.
 struct Explanation {
   enum Kind { holds, one_moved, nothing_single, undefined } kind = undefined;
@@ -179,6 +155,28 @@ const FittedBlock& fitted_block(const StoredResult& result, const std::string& n
 }
 
 }  // namespace
+
+bool take_off(const StoredResult& result, const AnyProblem& problem, std::vector<Sample>& samples) {
+  bool changes = !result.added_offsets.empty();
+  add_rising(result.added_offsets, samples, -1.0);
+  for (const MountedSensor& sensor : problem.sensors()) {
+    const Mount& mount = sensor.mount();
+    const auto inverse = [&](const char* part) {
+      const auto value = result.values.find(parameter_name(mount.parameter_prefix(), part));
+      return value == result.values.end() ? 0.0 : 1.0 / (1.0 + value->second) - 1.0;
+    };
+    const double fx = inverse("fx"), fy = inverse("fy"), cx = inverse("cx"), cy = inverse("cy");
+    if (fx == 0.0 && fy == 0.0 && cx == 0.0 && cy == 0.0) continue;
+    for (Sample& sample : samples) {
+      for (Observation& seen : sample.observations) {
+        if (seen.sensor != mount.name || !seen.camera) continue;
+        seen.camera = calibrated_camera_info(*seen.camera, fx, fy, cx, cy);
+        changes = true;
+      }
+    }
+  }
+  return changes;
+}
 
 std::vector<Sample> read_new_recordings(const NewSampleOptions& options, Diagnostics& diagnostics) {
   std::vector<Sample> samples = read_recordings(options.samples, diagnostics).samples;

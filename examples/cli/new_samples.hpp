@@ -35,6 +35,11 @@ struct NewSampleOptions {
   double level = 0.01;  ///< share of false alarms
 };
 
+/// Takes the result off what was recorded with it in force: offsets in <calibration rising>, and cameras.
+/// @param problem  has the sensors
+/// @returns  false if it changes nothing
+bool take_off(const StoredResult& result, const AnyProblem& problem, std::vector<Sample>& samples);
+
 /// Reads new samples of any format; an error if there are none.
 [[nodiscard]] std::vector<Sample> read_new_recordings(const NewSampleOptions& options,
                                                       Diagnostics& diagnostics);

@@ -1114,8 +1114,7 @@ void add_commands(Commands& commands, const kinecal::ShellCommand& line) {
       detect);
   commands.add<SimulateOptions>("simulate",
                                 "render photographs, clouds or masks of a simulated robot that "
-                                "differs from its URDF by known "
-                                "errors",
+                                "differs from its URDF by known errors",
                                 add_simulate, simulate);
   commands.add<StudyOptions>(
       "study", "calibrate simulated robots many times: how well it repeats, with how many poses",

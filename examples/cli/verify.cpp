@@ -10,6 +10,7 @@
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "kinecal/config/assemble.hpp"
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/procedure/calibrate_robot.hpp"
@@ -348,7 +349,16 @@ std::optional<CalibratedRobot> calibrated_alone(const StoredResult& result,
                          .urdf_text = result.urdf_text,
                          .urdf = result.urdf_then};
   if (!std::filesystem::exists(setup.urdf)) setup.urdf = result.urdf;
-  if (options.recorded == Recorded::after) add_rising(result.added_offsets, setup.samples, -1.0);
+  Diagnostics ignored;  // calibrate said it
+  const Calibration without = assemble(result.config, result.robot, {}, ignored);
+  std::vector<Sample> taken_off = setup.samples;
+  const bool matters = found.errors.empty() && !without.steps.empty() &&
+                       take_off(result, *without.steps.back().problem, taken_off);
+  if (matters && options.recorded == Recorded::after) setup.samples = std::move(taken_off);
+  if (matters && !options.recorded) {
+    found.notes.push_back(
+        "taken as recorded before the result was installed; if not, give --samples-recorded after");
+  }
   CalibrationOptions calibrating;
   calibrating.mesh_paths = options.mesh_paths;
   calibrating.search = Search::never;

@@ -293,8 +293,8 @@ void check_camera_has_pose(const Robot& robot, const std::string& base, const st
                                     const std::string& arm) {
   const std::string& camera = plan.setup.camera.frame;
   std::vector<std::string> candidates;
-  if (!arm.empty()) candidates.push_back(arm);
   if (!arm.empty()) {
+    candidates.push_back(arm);
     for (const Joint* joint : joints_to_root(robot, arm)) candidates.push_back(joint->parent);
   }
   for (const SurfaceLink& link : plan.surface->links()) candidates.push_back(link.name);

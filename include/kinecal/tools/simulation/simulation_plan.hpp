@@ -9,7 +9,8 @@
 //
 // Defaults follow from the URDF: the camera and the arm that `kinecal init` proposes, and a target
 // at the arm's end, or beside the robot if the arm carries the camera.  Target robot is the robot's
-// own surface: meshes.  The errors are in the parameters that a first configuration calibrates.  `simulation_plan.cpp` lists all keys.
+// own surface.  The errors are in the parameters that a first configuration calibrates.
+// `simulation_plan.cpp` lists all keys.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
