@@ -172,12 +172,15 @@ void answer_names(const Robot& robot, InitOptions& options, InitAnswers& answers
   };
   const bool tracker = answers.target == InitTarget::tracker;
   if (needs_target_frame(answers.target)) {
-    options.target_frame = frame(
-        options.target_frame,
-        {"--target-frame",
-         fmt::format("What do the samples call the frame of the {} (frame_id{})?",
-                     tracker ? "reflector" : "board", tracker ? "; several: with commas" : ""),
-         choices({proposed.target_frame})});
+    options.target_frame =
+        frame(options.target_frame,
+              {"--target-frame",
+               fmt::format("What do the samples call the frame of the {} (frame_id{})?",
+                           tracker                      ? "reflector"
+                           : is_touched(answers.target) ? "tip"
+                                                        : "board",
+                           tracker ? "; several: with commas" : ""),
+               choices({proposed.target_frame})});
     set_target_frames(options.target_frame, answers);
   }
   if (tracker) {
@@ -228,6 +231,7 @@ void warn_of_idle(const InitOptions& options, InitTarget target, std::string_vie
   warn(needs_camera(target), options.camera_name, "--robot-camera-name");
   warn(needs_target_frame(target), options.target_frame, "--target-frame");
   warn(target == InitTarget::tracker, options.tracker_frame, "--tracker-frame");
+  warn(has_length(target), options.length ? "given" : "", "--length");
 }
 
 /// The columns.yaml of a table that samples come from; empty if they come from no table.
@@ -237,6 +241,36 @@ std::string columns_file(const InitOptions& options) {
   const bool is_table = extension == ".csv" || extension == ".tsv" || extension == ".txt";
   if (!is_table) return "";
   return (std::filesystem::path(options.output).parent_path() / "columns.yaml").string();
+}
+
+/// The target given as an option, without the floor; nullopt if none is.
+/// @throws InputError  "--target: ..."
+std::optional<InitTarget> given_target(const Robot& robot, const InitOptions& options) {
+  std::optional<InitTarget> target;
+  for (const std::string& word : options.targets) {
+    const auto known = init_target(word);
+    if (!known) throw InputError("--target: " + check_target(robot, options, word));
+    if (!target || *target == InitTarget::ground) target = known->target;
+  }
+  return target;
+}
+
+/// The table with the places of sockets beside a columns.yaml: one that is there, or that of two sockets whose distance is
+/// given.
+/// @returns  its name; empty: the places are not known
+std::string sockets_file(const InitOptions& options, const std::string& columns,
+                         const std::string& table) {
+  const std::string name = "sockets.csv";
+  const std::string path = (std::filesystem::path(columns).parent_path() / name).string();
+  const bool is_there = std::filesystem::exists(path);
+  if (is_there && !(options.length && options.force)) {
+    say("{} is there and is used\n", path);
+    return name;
+  }
+  if (!options.length) return "";
+  write_output(path, sockets_at_distance(detail::read_text_file(table), table, *options.length));
+  say("wrote {}\n", path);
+  return name;
 }
 
 /// The samples of --from.  Of a table, the meaning of its columns is proposed, unless a columns.yaml is there.
@@ -254,7 +288,11 @@ std::vector<Sample> read_from(const Robot& robot, const InitOptions& options) {
       (!options.force || !detail::read_text_file(columns).starts_with(kProposedColumnsMark))) {
     say("{} is there and is used\n", columns);
   } else {
-    write_output(columns, proposed_columns(robot, detail::read_text_file(table), table));
+    const std::optional<InitTarget> target = given_target(robot, options);
+    const bool has_sockets = target ? *target == InitTarget::sockets : options.length.has_value();
+    const std::string sockets = has_sockets ? sockets_file(options, columns, table) : "";
+    write_output(columns,
+                 proposed_columns(robot, detail::read_text_file(table), table, target, sockets));
     say("wrote {}\n  what each column of {} means, as far as names and values tell: look at it\n",
         columns, table);
   }
@@ -273,7 +311,14 @@ InitAnswers answer_from_samples(const Robot& robot, const InitOptions& options) 
   given.camera = options.camera;
   given.tracker_frame = options.tracker_frame;
   set_target_frames(options.target_frame, given);
+  given.length = options.length;
+  const std::optional<InitTarget> target = given_target(robot, options);
+  if (target) given.target = *target;
   const InitAnswers found = answers_from_samples(robot, samples, std::move(given));
+  if (target && *target != found.target) {
+    throw InputError(fmt::format("--target: the samples of --from are those of {}, not of {}",
+                                 to_string(found.target), options.targets.front()));
+  }
   std::string text = fmt::format("from the samples: target {}", to_string(found.target));
   if (found.with_ground) text += ",ground";
   if (needs_arm(found.target)) text += fmt::format("; arm {}", found.arm);
@@ -296,6 +341,7 @@ InitAnswers answer(const Robot& robot, InitOptions& options) {
   answers.base = options.base;
   answers.arm = options.arm;
   answers.camera = options.camera;
+  answers.length = options.length;
   answer_targets(robot, options, answers);
   warn_of_idle(options, answers.target, to_string(answers.target, answers.board));
   if (needs_arm(answers.target) && answers.arm.empty()) {
@@ -321,7 +367,9 @@ std::string call_of(const InitOptions& options) {
         std::pair("--camera-type", options.camera_type),
         std::pair("--robot-camera-name", options.camera_name),
         std::pair("--target-frame", options.target_frame),
-        std::pair("--tracker-frame", options.tracker_frame), std::pair("--base", options.base)}) {
+        std::pair("--tracker-frame", options.tracker_frame),
+        std::pair("--length", options.length ? fmt::format("{}", *options.length) : ""),
+        std::pair("--base", options.base)}) {
     if (!value.empty()) call.add_option(option, {value});
   }
   return call.str();

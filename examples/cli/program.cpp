@@ -363,12 +363,12 @@ void add_init(CLI::App& command, InitOptions& options) {
   command.add_option("--output", options.output, "the configuration to write")
       ->type_name("FILE")
       ->capture_default_str();
-  CLI::Option* from = command
-                          .add_option("--from", options.from,
-                                      "recorded samples: target, camera and names are theirs, "
-                                      "nothing is asked; of a table (.csv, .tsv, .txt), "
-                                      "the meaning of its columns is proposed in columns.yaml")
-                          ->type_name("FILE");
+  command
+      .add_option("--from", options.from,
+                  "recorded samples: target, camera and names are theirs, "
+                  "nothing is asked; of a table (.csv, .tsv, .txt), "
+                  "the meaning of its columns is proposed in columns.yaml")
+      ->type_name("FILE");
   command
       .add_option("--capture", options.capture,
                   "the capture.yaml to write, with the same names; default: beside the output, if "
@@ -379,9 +379,10 @@ void add_init(CLI::App& command, InitOptions& options) {
           "--target", options.targets,
           "what the robot is measured against: leds; checkerboard, apriltag or charuco (in the "
           "gripper); world_checkerboard, world_apriltag or world_charuco; tracker; ground, which "
-          "also goes with another: leds,ground")
+          "also goes with another: leds,ground; robot (its own surface); or what the tip touches, "
+          "with "
+          "nothing but joints recorded: point, tool, sockets, plane, line, sphere, bar")
       ->delimiter(',')
-      ->excludes(from)
       ->type_name(one_of("TARGET", target_words()));
   command
       .add_option(
@@ -394,6 +395,11 @@ void add_init(CLI::App& command, InitOptions& options) {
       .add_option("--tracker-frame", options.tracker_frame,
                   "frame_id of the points of a tracker, default: 'tracker_frame'")
       ->type_name("NAME");
+  command
+      .add_option("--length", options.length,
+                  "a length that is known, metres: of a bar, between two sockets, from a ball's "
+                  "center to the tip")
+      ->type_name("METRES");
   command
       .add_option("--arm", options.arm,
                   "link at the end of the arm; with target robot: frees the joints up to it")

@@ -10,6 +10,8 @@
 #include "kinecal/errors/plane_fit.hpp"
 #include "kinecal/errors/plane_to_plane.hpp"
 #include "kinecal/errors/point_distance.hpp"
+#include "kinecal/errors/point_on_line.hpp"
+#include "kinecal/errors/point_on_plane.hpp"
 #include "kinecal/errors/point_to_line.hpp"
 #include "kinecal/errors/point_to_mesh.hpp"
 #include "kinecal/errors/point_to_outline.hpp"

@@ -27,6 +27,14 @@ TEST(OpenBlocks, PointToSphere) {
 TEST(OpenBlocks, PointToLine) {
   test::check_rows_of(PointToLine({0.1, -0.2, 0.3}, {1.0, 2.0, -0.5}), {"arm"});
 }
+TEST(OpenBlocks, PointOnPlane) {
+  test::check_rows_of(PointOnPlane{}, {"arm", "tracker"});
+  test::check_rows_of(PointOnPlane{}, {"arm", "body"});
+}
+TEST(OpenBlocks, PointOnLine) {
+  test::check_rows_of(PointOnLine{}, {"arm", "tracker"});
+  test::check_rows_of(PointOnLine{}, {"arm", "body"});
+}
 TEST(OpenBlocks, AReadingOfAUsersSensor) {
   test::check_rows_of(test::WireLength{}, {"camera", "wire"});
 }

@@ -154,6 +154,10 @@ Registry::Registry() {
         return PointToSphere{{number(block, "x"), number(block, "y"), number(block, "z")},
                              detail::length_of(block, "radius")};
       }));
+  add(built_in_block<PointOnPlane>(pair, {{"scale", 1.0}},
+                                   [](const BlockConfig&) { return PointOnPlane{}; }));
+  add(built_in_block<PointOnLine>(pair, {{"scale", 1.0}},
+                                  [](const BlockConfig&) { return PointOnLine{}; }));
   add(built_in_block<PoseToPose>(
       pair, {{"translation_scale", 1.0}, {"rotation_scale", 1.0}},
       [number](const BlockConfig& block) {

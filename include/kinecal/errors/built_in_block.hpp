@@ -6,6 +6,8 @@
 
 #include "kinecal/errors/plane_to_plane.hpp"
 #include "kinecal/errors/point_distance.hpp"
+#include "kinecal/errors/point_on_line.hpp"
+#include "kinecal/errors/point_on_plane.hpp"
 #include "kinecal/errors/point_to_line.hpp"
 #include "kinecal/errors/point_to_mesh.hpp"
 #include "kinecal/errors/point_to_outline.hpp"
@@ -22,6 +24,7 @@ namespace kinecal {
 /// An error block of a built-in type.
 using BuiltInBlock =
     std::variant<PointToPoint, PointToPixel, PointToPlane, PlaneToPlane, PointDistance, PointToLine,
-                 PointToSphere, PoseToPose, RayToRay, PointToRay, PointToMesh, PointToOutline>;
+                 PointToSphere, PoseToPose, RayToRay, PointToRay, PointToMesh, PointToOutline,
+                 PointOnPlane, PointOnLine>;
 
 }  // namespace kinecal

@@ -7,8 +7,10 @@
 
 #ifndef KINECAL_HEADER_ONLY
 /// Instances of their terms, declared (`extern`) or defined.
-#define KINECAL_POSE_BLOCK_CODE(storage)                \
-  storage template class BlockTerm<PoseToPose, Packet>; \
+#define KINECAL_POSE_BLOCK_CODE(storage)                  \
+  storage template class BlockTerm<PoseToPose, Packet>;   \
+  storage template class BlockTerm<PointOnPlane, Packet>; \
+  storage template class BlockTerm<PointOnLine, Packet>;  \
   storage template class BlockTerm<RayToRay, Packet>
 
 namespace kinecal::detail {

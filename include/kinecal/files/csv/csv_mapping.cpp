@@ -162,16 +162,14 @@ inline void read_csv_constant(ConfigMap& map, CsvObservation& observation) {
   }
 }
 
-/// `frame:` or `frame_column:`
+/// `frame:`, `frame_column:` or both
 inline void read_csv_frame(ConfigMap& map, CsvObservation& observation) {
   const ConfigEntry* column = map.find("frame_column");
   if (column == nullptr) {
     observation.frame = map.required_text("frame").value_or("");
     return;
   }
-  if (map.find("frame") != nullptr) {
-    map.error(column->place, "has frame and frame_column; give one of them");
-  }
+  if (map.find("frame") != nullptr) observation.frame = map.required_text("frame").value_or("");
   observation.frame_column = read_csv_sum(map, column->value, column->place);
   if (observation.frame_column.size() > 1) {
     map.error(column->place, "frame_column is a list; one column names the frame");

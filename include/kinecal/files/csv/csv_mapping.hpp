@@ -39,7 +39,7 @@
 //
 // Give a column by its name or by its number from 1.  Each point becomes a feature.  A sensor may
 // occur several times with different frames: its features are appended.  If the frame changes from
-// row to row, use frame_column: reflector instead of frame.
+// row to row, use frame_column: reflector instead of frame; with `frame: socket` beside it, a cell 2 means socket_2.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -90,14 +90,14 @@ struct CsvCondition {
 
 /// One observation of every sample.
 struct CsvObservation {
-  std::string sensor;                         ///< sensor_name of the observation
-  std::string frame;                          ///< in which its points are given
-  CsvSum frame_column;                        ///< one column that names the frame; empty: `frame`
-  CsvUnit unit;                               ///< of the columns of its points
-  std::vector<std::array<CsvSum, 3>> points;  ///< the third sum of a pixel is empty: zero
-  std::vector<Vector3<double>> constants;     ///< metres
-  PoseForm form = {};                         ///< of its poses
-  std::vector<CsvSum> poses = {};             ///< each: a column for each number of the form
+  std::string sensor;   ///< sensor_name of the observation
+  std::string frame;    ///< in which its points are given
+  CsvSum frame_column;  ///< one column that names the frame, behind `frame` and '_'; empty: `frame`
+  CsvUnit unit;         ///< of the columns of its points
+  std::vector<std::array<CsvSum, 3>> points;      ///< the third sum of a pixel is empty: zero
+  std::vector<Vector3<double>> constants;         ///< metres
+  PoseForm form = {};                             ///< of its poses
+  std::vector<CsvSum> poses = {};                 ///< each: a column for each number of the form
   std::vector<Pose<double>> constant_poses = {};  ///< metres
   std::vector<int> ids;                           ///< of each feature; empty: not given here
   CsvSum id_columns;                              ///< one column for each; empty: see `ids`

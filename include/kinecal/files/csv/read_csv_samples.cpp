@@ -241,7 +241,8 @@ class CsvSamples {
   void add_features(const CsvRow& row, const CsvObservation& observation, const Indices& column,
                     const Indices& ids, std::size_t& next, std::size_t& next_pose,
                     std::vector<Feature>& features) {
-    const std::string frame = column.empty() ? observation.frame : text(row, column.front());
+    std::string frame = observation.frame;
+    if (!column.empty()) frame += (frame.empty() ? "" : "_") + text(row, column.front());
     const std::size_t before = features.size();
     for (const auto& point : observation.constants) features.push_back({frame, point});
     for (const auto& point : observation.points) {

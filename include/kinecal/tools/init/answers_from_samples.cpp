@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <iterator>
 #include <limits>
@@ -15,6 +16,7 @@
 
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/chain.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/text/shell_command.hpp"
 #include "kinecal/tools/init/init_answers.hpp"
@@ -186,12 +188,78 @@ void check_no_pixels(const std::vector<const SeenSensor*>& chains) {
   }
 }
 
+/// The different points of a sensor's features.
+[[nodiscard]] std::vector<Vector3<double>> places_of(std::span<const Sample> samples,
+                                                     const std::string& sensor) {
+  std::vector<Vector3<double>> places;
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(sensor);
+    if (seen == nullptr) continue;
+    for (const Feature& feature : seen->features) {
+      const bool is_known = std::find(places.begin(), places.end(), feature.point) != places.end();
+      if (!is_known) places.push_back(feature.point);
+    }
+  }
+  return places;
+}
+
+/// The center of the sphere on which the end of an arm is in the samples, by the URDF: |p|^2 = 2 c.p + k, linear.
+[[nodiscard]] Vector3<double> center_of(const Robot& robot, std::span<const Sample> samples,
+                                        const InitAnswers& answers) {
+  const std::string base = answers.base.empty() ? propose_base(robot, answers.arm) : answers.base;
+  const RuntimeChain chain = make_chain(robot, base, answers.arm);
+  Eigen::Matrix4d square = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  for (const Sample& sample : samples) {
+    const Vector3<double> p = forward_kinematics(chain, [&](const std::string& joint) {
+                                return sample.position(joint).value_or(0.0);
+                              }).translation;
+    const Eigen::Vector4d row(2.0 * p.x(), 2.0 * p.y(), 2.0 * p.z(), 1.0);
+    square += row * row.transpose();
+    right += row * p.squaredNorm();
+  }
+  constexpr double kTiny = 1e-9;  // points in a plane have no center: the nearest one
+  square.diagonal().array() += kTiny * square.trace();
+  return Eigen::Vector4d(square.ldlt().solve(right)).head<3>();
+}
+
+/// A tip and what it touches: two sensors without a camera, neither of which measures.
+/// @throws InputError  if there are not two
+void add_touched(const Robot& robot, std::span<const Sample> samples,
+                 const std::vector<const SeenSensor*>& chains, InitAnswers& answers) {
+  if (chains.size() != 2) {
+    throw InputError(
+        fmt::format("--from: a tip touches something, so samples have two sensors "
+                    "without a camera, not {}",
+                    chains.empty() ? std::string("none") : names_of(chains)));
+  }
+  const SeenSensor &held = *chains[0], &touched = *chains[1];
+  answers.holder = held.name;
+  answers.tracker = touched.name;
+  if (answers.target_frame.empty()) answers.target_frame = held.frames.front();
+  answers.places = touched.frames;
+  if (answers.target == InitTarget::sockets && touched.varies) {
+    answers.layout = places_of(samples, touched.name);
+  }
+  if (answers.arm.empty()) answers.arm = moving_arm(robot, samples, "");
+  const bool is_sphere = answers.target == InitTarget::sphere || answers.target == InitTarget::bar;
+  if (is_sphere && robot.has_link(answers.arm)) answers.center = center_of(robot, samples, answers);
+}
+
 /// A reflector and a tracker: two sensors without a camera, one of which always reports the same.
 void add_tracker(const Robot& robot, std::span<const Sample> samples,
                  const std::vector<const SeenSensor*>& chains, InitAnswers& answers) {
   if (chains.size() == 2 && !chains[0]->varies && !chains[1]->varies) {
     throw InputError("--from: the points of " + names_of(chains) +
-                     " are the same in all samples: neither measures anything");
+                     " are the same in all samples: neither measures anything.  If a tip touched "
+                     "something, say what: --target point, sockets, plane, line, sphere or bar");
+  }
+  const SeenSensor& varying = *chains[chains.front()->varies ? 0 : 1];
+  if (chains.size() == 2 && 2 * places_of(samples, varying.name).size() <= samples.size() &&
+      samples.size() > 3) {
+    // No instrument reads the very same numbers again.
+    answers.target = InitTarget::sockets;
+    return add_touched(robot, samples, {chains[chains.front()->varies ? 1 : 0], &varying}, answers);
   }
   if (chains.size() != 2 || chains[0]->varies == chains[1]->varies) {
     throw InputError(
@@ -282,7 +350,9 @@ InitAnswers answers_from_samples(const Robot& robot, std::span<const Sample> all
     throw InputError("--from: the samples have several cameras, " + detail::names_of(cameras) +
                      "; init writes a configuration for one: give it the samples of one");
   }
-  if (cameras.empty()) {
+  if (is_touched(given.target)) {
+    detail::add_touched(robot, samples, chains, given);
+  } else if (cameras.empty()) {
     detail::check_no_pixels(chains);
     detail::add_tracker(robot, samples, chains, given);
   } else {

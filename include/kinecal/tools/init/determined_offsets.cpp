@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/tools/init/determined_offsets.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <map>
 #include <numbers>
 #include <random>
@@ -68,17 +71,23 @@ class GeneratedPoses {
       }
     }
     place();
-    generate(drives);
+    if (measured_.contact == Contact::none) {
+      generate(drives);
+    } else {
+      touch(drives);
+    }
   }
 
-  /// Number of poses.
-  [[nodiscard]] std::size_t size() const { return poses_.size(); }
+  /// Positions by joint.
+  [[nodiscard]] const std::vector<NamedNumbers>& poses() const { return poses_; }
 
   /// The points that the sensor measures in all poses (3 or, in pixels, 2 each).
   /// @param offsets      of joints
   /// @param corrections  of frames
-  [[nodiscard]] Eigen::VectorXd measured(const NamedNumbers& offsets,
-                                         const NamedPoses& corrections) const {
+  /// @param socket       of several, the only one whose frame has the correction of the sensor's frame; -1: all have it
+  [[nodiscard]] Eigen::VectorXd measured(const NamedNumbers& offsets, const NamedPoses& corrections,
+                                         int socket = -1) const {
+    if (measured_.contact != Contact::none) return touched(offsets, corrections, socket);
     const Eigen::Index rows = row_count();
     Eigen::VectorXd all(rows * static_cast<Eigen::Index>(poses_.size() * points_.size()));
     Eigen::Index at = 0;
@@ -92,6 +101,22 @@ class GeneratedPoses {
       }
     }
     return all;
+  }
+
+  /// Components of the sensor's frame that its contact shows: x y z and rotations about them.
+  [[nodiscard]] std::array<bool, 6> sensor_axes() const {
+    switch (measured_.contact) {
+      case Contact::none:
+        return {true, true, true, true, true, true};
+      case Contact::line:
+        return {true, true, false, true, true, false};
+      case Contact::plane:
+        return {false, false, true, true, true, false};
+      case Contact::point:
+      case Contact::sphere:
+        break;
+    }
+    return shown_axes(measured_.layout);
   }
 
   /// How the camera's parameters change these: focal lengths, centre and, with depth, its offset
@@ -143,6 +168,115 @@ class GeneratedPoses {
     const Pose<double> base_T_sensor = end_of(to_sensor_, pose, offsets, corrections) *
                                        link_T_sensor_ * correction(measured_.sensor_frame);
     return base_T_sensor.inverse() * base_T_target;
+  }
+
+  /// What a contact shows of a point in its frame.
+  [[nodiscard]] Eigen::VectorXd shown(const Vector3<double>& p) const {
+    switch (measured_.contact) {
+      case Contact::line:
+        return p.head<2>();
+      case Contact::plane:
+        return p.tail<1>();
+      case Contact::sphere:
+        return Eigen::VectorXd::Constant(1, p.norm());
+      case Contact::none:
+      case Contact::point:
+        break;
+    }
+    return p;
+  }
+  /// Of several sockets, the one that is touched in a pose.
+  [[nodiscard]] std::size_t socket_of(std::size_t pose) const { return pose % sockets_.size(); }
+
+  [[nodiscard]] Eigen::VectorXd touched(const NamedNumbers& offsets, const NamedPoses& corrections,
+                                        int socket) const {
+    const Eigen::Index rows = shown(Vector3<double>::UnitX()).size();
+    Eigen::VectorXd all(rows * static_cast<Eigen::Index>(poses_.size()));
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      NamedPoses of_pose = corrections;
+      if (socket >= 0 && socket_of(i) != static_cast<std::size_t>(socket)) {
+        of_pose.erase(measured_.sensor_frame);
+      }
+      const Pose<double> sensor_T_target = seen_from(poses_[i], offsets, of_pose);
+      all.segment(static_cast<Eigen::Index>(i) * rows, rows) =
+          shown(sensor_T_target.translation - sockets_[socket_of(i)]);
+    }
+    return all;
+  }
+
+  /// Random poses in which the tip touches: the contact is where the tip is in a first pose.
+  void touch(const std::set<std::string>& drives) {
+    constexpr std::size_t kPoses = 60;
+    constexpr int kTries = 3000;
+    constexpr double kRadius = 0.2, kApart = 0.1;  // metres
+    std::mt19937_64 random(1);
+    const auto random_pose = [&] {
+      NamedNumbers pose;
+      for (const std::string& joint : drives)
+        pose[joint] = random_position(driven(robot_, joint), random);
+      return pose;
+    };
+    const auto tip_in_base = [&](const NamedNumbers& pose) {
+      return (end_of(to_target_, pose, {}, {}) * link_T_target_).translation;
+    };
+    for (int i = 0; i < kTries && poses_.empty(); ++i) {
+      // A contact in the middle of what random poses reach, not at its border.
+      Vector3<double> middle = Vector3<double>::Zero();
+      constexpr int kMean = 3;
+      for (int k = 0; k < kMean; ++k) middle += tip_in_base(random_pose()) / kMean;
+      const Pose<double> base_T_sensor = end_of(to_sensor_, random_pose(), {}, {});
+      link_T_sensor_.translation = base_T_sensor.inverse() * middle;
+      if (measured_.contact == Contact::sphere) {
+        link_T_sensor_.translation += kRadius * Vector3<double>(0.6, 0.0, -0.8);
+      }
+      sockets_ = measured_.layout;
+      for (int k = 0; k < measured_.places && measured_.layout.empty(); ++k) {
+        sockets_.emplace_back(kApart * k, k > 1 ? kApart : 0.0, 0.0);
+      }
+      radius_ = measured_.contact == Contact::sphere ? kRadius : 0.0;
+      for (int n = 0; n < kTries / 10 && poses_.size() < kPoses; ++n) {
+        NamedNumbers pose = random_pose();
+        if (reach(pose, drives)) poses_.push_back(std::move(pose));
+      }
+      if (poses_.size() < kPoses / 3) poses_.clear();  // hardly reachable: another place
+    }
+  }
+
+  /// Moves a pose until the next contact is touched.
+  /// @returns  false if it does not within the limits
+  [[nodiscard]] bool reach(NamedNumbers& pose, const std::set<std::string>& drives) const {
+    constexpr int kIterations = 30;
+    constexpr double kStep = 1e-6, kMost = 0.3, kClose = 1e-9;
+    const auto missed = [&](const NamedNumbers& at) -> Eigen::VectorXd {
+      Eigen::VectorXd by =
+          shown(seen_from(at, {}, {}).translation - sockets_[socket_of(poses_.size())]);
+      by.array() -= radius_;
+      return by;
+    };
+    for (int i = 0; i < kIterations; ++i) {
+      const Eigen::VectorXd by = missed(pose);
+      if (by.norm() < kClose) {
+        return std::all_of(drives.begin(), drives.end(), [&](const std::string& name) {
+          const Joint joint = driven(robot_, name);
+          return joint.type == JointType::continuous || !joint.limits ||
+                 (pose.at(name) >= joint.limits->lower && pose.at(name) <= joint.limits->upper);
+        });
+      }
+      Eigen::MatrixXd jacobian(by.size(), static_cast<Eigen::Index>(drives.size()));
+      Eigen::Index column = 0;
+      for (const std::string& name : drives) {
+        NamedNumbers moved = pose;
+        moved[name] += kStep;
+        jacobian.col(column++) = (missed(moved) - by) / kStep;
+      }
+      const Eigen::MatrixXd square =
+          jacobian * jacobian.transpose() + 1e-8 * Eigen::MatrixXd::Identity(by.size(), by.size());
+      Eigen::VectorXd step = -jacobian.transpose() * square.ldlt().solve(by);
+      step *= std::min(1.0, kMost / step.lpNorm<Eigen::Infinity>());
+      column = 0;
+      for (const std::string& name : drives) pose[name] += step(column++);
+    }
+    return false;
   }
 
   /// Somewhere, as no place is special: on the axis of the last joint, a reflector would not show it.
@@ -209,6 +343,9 @@ class GeneratedPoses {
   Pose<double> link_T_target_, link_T_sensor_;
   std::vector<Vector3<double>> points_;
   std::vector<NamedNumbers> poses_;
+  std::vector<Vector3<double>>
+      sockets_;          ///< that the tip touches, in the sensor's frame: one, or several
+  double radius_ = 0.0;  ///< of a sphere that the tip touches, metres
 };
 
 /// Of an offset's effect, what must be left beside free frames.  With a length of 0.5 m, an offset
@@ -250,11 +387,20 @@ template <class At>
   return (at(kStep) - at(-kStep)) / (2.0 * kStep);
 }
 
+/// The axes of a frame: those of a point's do not turn.
+[[nodiscard]] std::array<bool, 6> axes_of(bool is_point) {
+  return {true, true, true, !is_point, !is_point, !is_point};
+}
+
 /// How a frame's axes change what is measured.
+/// @param socket  see GeneratedPoses::measured()
 [[nodiscard]] std::vector<Eigen::VectorXd> frame_columns(const GeneratedPoses& poses,
-                                                         const std::string& frame, bool is_point) {
+                                                         const std::string& frame,
+                                                         const std::array<bool, 6>& axes,
+                                                         int socket = -1) {
   std::vector<Eigen::VectorXd> columns;
-  for (int axis = 0; axis < (is_point ? 3 : 6); ++axis) {
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!axes[static_cast<std::size_t>(axis)]) continue;
     columns.push_back(derivative([&](double number) {
       Vector3<double> vector = Vector3<double>::Zero();
       vector(axis % 3) = number;
@@ -264,7 +410,7 @@ template <class At>
       } else {
         correction.rotation = exp(vector);
       }
-      return poses.measured({}, {{frame, correction}});
+      return poses.measured({}, {{frame, correction}}, socket);
     }));
   }
   return columns;
@@ -293,6 +439,18 @@ bool add_all(Span& span, const std::vector<Eigen::VectorXd>& columns) {
 }  // namespace
 }  // namespace detail
 
+std::array<bool, 6> shown_axes(const std::vector<Vector3<double>>& layout) {
+  std::array<bool, 6> axes = {true, true, true, false, false, false};
+  for (const Vector3<double>& point : layout) {
+    for (int turn = 0; turn < 3; ++turn) {
+      if (cross<double>(Vector3<double>::Unit(turn), point).norm() > 0.0) {
+        axes[static_cast<std::size_t>(3 + turn)] = true;
+      }
+    }
+  }
+  return axes;
+}
+
 std::vector<std::string> driven_joints(const Robot& robot, const MeasuredTarget& measured) {
   std::vector<std::string> names;
   for (const std::string& end : {measured.target, measured.sensor}) {
@@ -306,22 +464,33 @@ std::vector<std::string> driven_joints(const Robot& robot, const MeasuredTarget&
   return names;
 }
 
+std::vector<std::map<std::string, double>> touching_poses(const Robot& robot,
+                                                          const MeasuredTarget& measured) {
+  return detail::GeneratedPoses(robot, measured, {}).poses();
+}
+
 OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
                              const std::vector<std::string>& frames,
                              const std::vector<std::string>& joints) {
   const std::set<std::string> corrected(frames.begin(), frames.end());
   const detail::GeneratedPoses poses(robot, measured, corrected);
   std::vector<detail::FrameSpan> free;
-  const auto add = [&](const std::string& name, bool is_point) {
-    if (!name.empty()) free.push_back({name, detail::frame_columns(poses, name, is_point)});
+  const auto add = [&](const std::string& name, const std::array<bool, 6>& axes, int socket = -1) {
+    if (!name.empty()) free.push_back({name, detail::frame_columns(poses, name, axes, socket)});
   };
-  add(measured.sensor_frame, false);
-  for (const std::string& frame : frames) add(frame, false);
-  add(measured.target_frame, measured.is_point);
+  const bool many = measured.places > 1 && measured.layout.empty();
+  for (int k = 0; k < measured.places && many; ++k) {
+    add(measured.sensor_frame, poses.sensor_axes(), k);
+  }
+  if (!many) add(measured.sensor_frame, poses.sensor_axes());
+  for (const std::string& frame : frames) add(frame, detail::axes_of(false));
+  add(measured.target_frame, detail::axes_of(measured.is_point));
 
   OffsetEffects effects;
   detail::Span span;
   detail::add_all(span, poses.camera_columns());
+  const bool free_radius = measured.contact == Contact::sphere && !measured.radius_known;
+  if (free_radius) span.add(Eigen::VectorXd::Ones(poses.measured({}, {}).size()));
   for (const detail::FrameSpan& frame : free) {
     effects.frames_determined = detail::add_all(span, frame.columns) && effects.frames_determined;
   }

@@ -4,6 +4,10 @@
 //
 //   p_sensor = (base_T_sensor)^-1 base_T_target p
 //
+// Of a tip that touches something, poses are random too, then moved by Gauss-Newton until it does, and only the components
+// of p_sensor are looked at that the contact determines: all of a point, x and y of a line, z of a plane, the distance to
+// the center of a sphere.
+//
 // Its derivatives with respect to frames and camera parameters span what these can imitate.  An
 // offset is determined if its derivative is not within this span, nor within that of offsets before
 // it: what is left after projection is at least kLeastEffect of it.  So an offset before the first
@@ -14,24 +18,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "kinecal/geometry/rotation.hpp"
 #include "kinecal/kinematics/robot.hpp"
 
 namespace kinecal {
 
-/// A target and the sensor that measures its points.
+/// What a tip touches: in its own frame, the origin, the z axis, the plane z = 0, or a sphere about the origin.
+enum class Contact { none, point, line, plane, sphere };
+
+/// A target and the sensor that measures its points; or a tip on an arm and what it touches, fixed to `sensor`.
 struct MeasuredTarget {
-  std::string base;               ///< link to which chains and frames beyond them refer
-  std::string target;             ///< link that carries the points
-  std::string sensor;             ///< link of the sensor
-  std::string target_frame = {};  ///< free frame of the points in the target's link; empty: none
-  bool is_point = false;          ///< it has a position only, as the frame of a reflector
-  std::string sensor_frame = {};  ///< free frame of the sensor in its link; empty: none
-  bool is_camera = false;         ///< the sensor has intrinsics, which are free
-  bool has_depth = false;         ///< it measures points in metres, not pixels
+  std::string base;                 ///< link to which chains and frames beyond them refer
+  std::string target;               ///< link that carries the points
+  std::string sensor;               ///< link of the sensor
+  std::string target_frame = {};    ///< free frame of the points in the target's link; empty: none
+  bool is_point = false;            ///< it has a position only, as the frame of a reflector
+  std::string sensor_frame = {};    ///< free frame of the sensor in its link; empty: none
+  bool is_camera = false;           ///< the sensor has intrinsics, which are free
+  bool has_depth = false;           ///< it measures points in metres, not pixels
+  Contact contact = Contact::none;  ///< what the point of the target touches in every pose
+  int places = 1;  ///< of points that the tip touches: each has a free position of its own
+  std::vector<Vector3<double>> layout =
+      {};  ///< metres: known places of such points in one frame, whose pose is free
+  bool radius_known = true;  ///< of a sphere
 };
+
+/// The axes of a frame that touching points of it shows: x y z and the rotations about them.
+/// @param layout  metres, in the frame; empty: its origin
+[[nodiscard]] std::array<bool, 6> shown_axes(const std::vector<Vector3<double>>& layout);
 
 /// What a joint's offset changes.
 struct OffsetEffect {
@@ -52,6 +71,12 @@ struct OffsetEffects {
 /// @throws RobotError  like make_chain()
 [[nodiscard]] std::vector<std::string> driven_joints(const Robot& robot,
                                                      const MeasuredTarget& measured);
+
+/// Random poses, as many as were found of 60, in which the tip touches what it touches: positions by joint.  Nothing looks for collisions.
+/// @param measured  with a contact
+/// @throws RobotError  like make_chain()
+[[nodiscard]] std::vector<std::map<std::string, double>> touching_poses(
+    const Robot& robot, const MeasuredTarget& measured);
 
 /// The effects of these joints' offsets.
 /// @param frames  joints whose frames are free

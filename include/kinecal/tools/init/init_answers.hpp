@@ -9,10 +9,26 @@
 #include <string_view>
 #include <vector>
 
+#include "kinecal/geometry/rotation.hpp"
+
 namespace kinecal {
 
 /// The kinds of targets that a robot is measured against: where they are, and what sees them.
-enum class InitTarget { leds, checkerboard, world_checkerboard, tracker, ground, robot };
+enum class InitTarget {
+  leds,
+  checkerboard,
+  world_checkerboard,
+  tracker,
+  ground,
+  robot,
+  tool,
+  point,
+  sockets,
+  plane,
+  line,
+  sphere,
+  bar
+};
 
 /// The boards of `checkerboard` and `world_checkerboard`.
 enum class InitBoard { checkerboard, apriltag, charuco };
@@ -26,7 +42,7 @@ struct InitTargetWord {
 };
 
 /// All targets, in the order of questions.
-inline constexpr std::array<InitTargetWord, 10> kInitTargets = {{
+inline constexpr std::array<InitTargetWord, 17> kInitTargets = {{
     {InitTarget::leds, InitBoard::checkerboard, "leds",
      "LEDs (or other points at known places) on the gripper, seen by a camera"},
     {InitTarget::checkerboard, InitBoard::checkerboard, "checkerboard",
@@ -45,6 +61,20 @@ inline constexpr std::array<InitTargetWord, 10> kInitTargets = {{
     {InitTarget::ground, InitBoard::checkerboard, "ground", "the floor, seen by a depth camera"},
     {InitTarget::robot, InitBoard::checkerboard, "robot",
      "the robot itself: its meshes, in clouds of a depth camera or in masks"},
+    {InitTarget::point, InitBoard::checkerboard, "point",
+     "nothing measures: the tip stays in one place, such as a cone, in many orientations"},
+    {InitTarget::tool, InitBoard::checkerboard, "tool",
+     "the same for the tool's centre point alone: four poses or more, the joints as they are"},
+    {InitTarget::sockets, InitBoard::checkerboard, "sockets",
+     "nothing measures: a ball or tip in several places, their distances known or not"},
+    {InitTarget::plane, InitBoard::checkerboard, "plane",
+     "nothing measures: the tip touches a table or a plate"},
+    {InitTarget::line, InitBoard::checkerboard, "line",
+     "nothing measures: the tip touches an edge or a taut wire"},
+    {InitTarget::sphere, InitBoard::checkerboard, "sphere",
+     "nothing measures: the tip touches a ball"},
+    {InitTarget::bar, InitBoard::checkerboard, "bar",
+     "nothing measures: a ball bar from the tip to a socket"},
 }};
 
 /// The name of a target on the command line.
@@ -73,14 +103,22 @@ inline constexpr std::array<InitTargetWord, 10> kInitTargets = {{
   return words;
 }
 
+/// True if the tip of an arm touches the target and no sensor measures: joints are all that is recorded.
+[[nodiscard]] constexpr bool is_touched(InitTarget target) {
+  return target >= InitTarget::tool;
+}
 /// True if the target needs an arm.
 [[nodiscard]] constexpr bool needs_arm(InitTarget target) {
   return target == InitTarget::leds || target == InitTarget::checkerboard ||
-         target == InitTarget::tracker;
+         target == InitTarget::tracker || is_touched(target);
 }
 /// True if the target needs a camera.
 [[nodiscard]] constexpr bool needs_camera(InitTarget target) {
-  return target != InitTarget::tracker;
+  return target != InitTarget::tracker && !is_touched(target);
+}
+/// True if the target has a length that may be known: of a bar, between two sockets, from a ball's center to the tip.
+[[nodiscard]] constexpr bool has_length(InitTarget target) {
+  return target == InitTarget::sockets || target == InitTarget::sphere || target == InitTarget::bar;
 }
 
 /// True if the target is a board, in the gripper or in the world.
@@ -108,6 +146,13 @@ struct InitAnswers {
   InitBoard board = InitBoard::checkerboard;  ///< of a board
   std::string holder = {};   ///< sensor_name of what holds the target; empty: "arm" or "board"
   std::string tracker = {};  ///< sensor_name of a laser tracker; empty: "tracker"
+  std::vector<std::string> places =
+      {};                             ///< frames of what is touched: one for each socket, else one
+  std::optional<double> length = {};  ///< metres, if it is known: see has_length()
+  std::vector<Vector3<double>> layout =
+      {};  ///< metres: places of sockets in one frame; empty: not known
+  Vector3<double> center =
+      Vector3<double>::Zero();  ///< where a sphere or the end of a bar may be, in the base
 };
 
 /// The sensor_name of what holds the target: the arm, or a board in the world.
@@ -116,9 +161,10 @@ struct InitAnswers {
   return answers.target == InitTarget::world_checkerboard ? "board" : "arm";
 }
 
-/// The sensor_name of a laser tracker.
+/// The sensor_name of a laser tracker, or of what is touched.
 [[nodiscard]] inline std::string tracker_of(const InitAnswers& answers) {
-  return answers.tracker.empty() ? "tracker" : answers.tracker;
+  if (!answers.tracker.empty()) return answers.tracker;
+  return is_touched(answers.target) ? "touched" : "tracker";
 }
 
 }  // namespace kinecal

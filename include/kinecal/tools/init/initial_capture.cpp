@@ -114,9 +114,9 @@ namespace {
 
 std::string initial_capture(const Robot& robot, const InitAnswers& given) {
   const InitAnswers answers = with_proposals(robot, given);
-  // No finder reports where a reflector is, or LEDs in pixels; clouds and masks are taken as they are.
+  // No finder reports where a reflector or a tip is, or LEDs in pixels; clouds and masks are taken as they are.
   const bool in_pixels = answers.camera_type == "camera2d";
-  if (answers.target == InitTarget::tracker || answers.target == InitTarget::robot) return "";
+  if (!needs_camera(answers.target) || answers.target == InitTarget::robot) return "";
   if (answers.target == InitTarget::leds && in_pixels) return "";
   std::string text = fmt::format(
       "{}: what to look for, with the names of its configuration.\n"

@@ -392,6 +392,150 @@ bool free_arm_and_head(InitPlan& plan, const Robot& robot, const InitAnswers& an
   return plan;
 }
 
+// Targets that a tip touches: joints are all that is recorded.
+
+[[nodiscard]] Contact contact_of(InitTarget target) {
+  switch (target) {
+    case InitTarget::plane:
+      return Contact::plane;
+    case InitTarget::line:
+      return Contact::line;
+    case InitTarget::sphere:
+    case InitTarget::bar:
+      return Contact::sphere;
+    default:
+      return Contact::point;
+  }
+}
+
+/// What the tip touches, seen from the arm's base.
+[[nodiscard]] MeasuredTarget touched_by_arm(const InitAnswers& answers) {
+  MeasuredTarget touched{answers.base, answers.arm, answers.base};
+  touched.target_frame = answers.target_frame;
+  touched.is_point = true;
+  touched.sensor_frame = answers.places.front();
+  touched.contact = contact_of(answers.target);
+  touched.radius_known = answers.length.has_value();
+  touched.places = static_cast<int>(answers.places.size());
+  touched.layout = answers.layout;
+  return touched;
+}
+
+/// Frees some axes of a frame outside the URDF.
+/// @param axes  of x y z roll pitch yaw
+void free_axes(InitPlan& plan, const std::string& name, const std::string& why,
+               const std::array<bool, 6>& axes) {
+  free_frame(plan, name, why);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    plan.free_frames.back().fields[i].second = axes[i] ? "true" : "false";
+  }
+}
+
+/// Frees the frames of what is touched, in the axes that a contact shows.
+void free_places(InitPlan& plan, const InitAnswers& answers) {
+  const std::string base = name_to_yaml(answers.base);
+  const std::string& first = answers.places.front();
+  switch (answers.target) {
+    case InitTarget::plane:
+      free_axes(plan, first, "The plane: z = 0 of this frame, seen from link " + base + ".",
+                {false, false, true, true, true, false});
+      break;
+    case InitTarget::line:
+      free_axes(plan, first, "The line: the z axis of this frame, seen from link " + base + ".",
+                {true, true, false, true, true, false});
+      break;
+    case InitTarget::sockets:
+      if (!answers.layout.empty()) {
+        free_axes(plan, first,
+                  "The sockets, at known places of this frame, seen from link " + base +
+                      ".  No sample shows a rotation about an axis that all of them are on.",
+                  shown_axes(answers.layout));
+        break;
+      }
+      [[fallthrough]];
+    default:
+      for (const std::string& place : answers.places) {
+        free_frame(plan, place,
+                   &place == &first ? "What stands still, seen from link " + base +
+                                          ": a point, which has no rotation."
+                                    : "",
+                   true);
+      }
+  }
+}
+
+/// The tip of an arm touches something that stands still; nothing is measured but the joints.
+[[nodiscard]] InitPlan plan_touched(const Robot& robot, const InitAnswers& answers) {
+  InitPlan plan;
+  const InitTarget target = answers.target;
+  if (movers(robot, answers.base, answers.arm).empty()) {
+    throw InputError(
+        fmt::format("--arm: link '{}' does not move relative to link '{}'; choose another link, or "
+                    "another --base",
+                    answers.arm, answers.base));
+  }
+  const std::string tip = answers.target_frame;
+  const bool is_pose = target == InitTarget::plane || target == InitTarget::line;
+  add_chain_model(plan, "The arm: the tip is point (0, 0, 0) of frame " + tip + ".",
+                  holder_of(answers), answers.arm);
+  add_chain_model(plan, "What it touches, which stands still in this link.", tracker_of(answers),
+                  answers.base);
+  if (is_pose) plan.models.back().fields.front().second = "chain6d";
+  const MeasuredTarget touched = touched_by_arm(answers);
+  if (target == InitTarget::tool) {
+    plan.left_out.push_back(
+        {"all joints", "The tool's centre point alone: with --target point, they are free, too"});
+  } else {
+    free_offsets(plan, robot, touched, {});
+    if (plan.free_params.empty()) {
+      throw InputError(fmt::format(
+          "--target: {} shows no joint offset of arm '{}'; with --target tool, its tip alone is "
+          "found",
+          to_string(target), answers.arm));
+    }
+  }
+  free_places(plan, answers);
+  free_frame(plan, tip,
+             "Where the tip is in link " + name_to_yaml(answers.arm) +
+                 "; a point has no rotation.  The URDF does not contain this frame.",
+             true);
+  for (const std::string& place : answers.places) add_initial_value(plan, place, "");
+  plan.initial_values.front().why =
+      "Zeros are no guess: kinecal searches for what the URDF does not have.";
+  add_initial_value(plan, tip, "");
+  if (contact_of(target) == Contact::sphere) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      plan.initial_values.front().fields[i].second =
+          fmt::format("{:.3f}", answers.center(static_cast<Eigen::Index>(i)));
+    }
+  }
+  InitEntry block{
+      "The tip is there in every sample.  The noise is what residuals show.", "contact", {}};
+  const char* type = target == InitTarget::plane             ? "point_on_plane"
+                     : target == InitTarget::line            ? "point_on_line"
+                     : contact_of(target) == Contact::sphere ? "point_distance"
+                                                             : "chain3d_to_chain3d";
+  block.fields = {{"type", type},
+                  {"model_a", name_to_yaml(holder_of(answers))},
+                  {"model_b", name_to_yaml(tracker_of(answers))}};
+  if (contact_of(target) == Contact::sphere) {
+    constexpr double kGuess = 0.1;  // metres
+    block.fields.emplace_back("length", fmt::format("{}", answers.length.value_or(kGuess)));
+    if (!answers.length) {
+      plan.free_params.push_back({target == InitTarget::bar
+                                      ? "The length of the bar, metres: what is known as 'length' "
+                                        "below need not be free."
+                                      : "From the ball's center to the tip, metres: its radius and "
+                                        "that of a round tip.",
+                                  "contact_length",
+                                  {}});
+    }
+  }
+  block.fields.emplace_back("loss", "{type: huber, scale: 3.0}");
+  plan.error_blocks.push_back(std::move(block));
+  return plan;
+}
+
 /// The floor alone.
 [[nodiscard]] InitPlan plan_ground(const Robot& robot, const InitAnswers& answers) {
   InitPlan plan;
@@ -463,6 +607,7 @@ bool free_arm_and_head(InitPlan& plan, const Robot& robot, const InitAnswers& an
   try {
     InitPlan plan;
     if (answers.target == InitTarget::tracker) return plan_tracker(robot, answers);
+    if (is_touched(answers.target)) return plan_touched(robot, answers);
     if (answers.target == InitTarget::robot) {
       plan = plan_robot(robot, answers);
     } else if (answers.target == InitTarget::ground) {
@@ -529,11 +674,22 @@ void check_answers(const Robot& robot, const InitAnswers& answers) {
                             "' is the frame of the reflector too; give the tracker another one");
     }
   }
+  for (const std::string& place : answers.places) {
+    check_init_frame(robot, "--target", place, diagnostics);
+  }
+  if (answers.length && !has_length(target)) {
+    diagnostics.error({"--length", 0},
+                      fmt::format("{} has no length; sockets, sphere and bar have one",
+                                  to_string(target, answers.board)));
+  } else if (answers.length && !(*answers.length > 0.0 && *answers.length < 10.0)) {
+    diagnostics.error({"--length", 0}, fmt::format("{} is no length in metres", *answers.length));
+  }
   const bool floor = target == InitTarget::ground || answers.with_ground;
-  if (floor && target == InitTarget::tracker) {
+  if (floor && !needs_camera(target)) {
     diagnostics.error(
         {"--target", 0},
-        "tracker and ground have no parameters in common; make a configuration for each");
+        fmt::format("{} and ground have no parameters in common; make a configuration for each",
+                    to_string(target)));
   } else if (floor && answers.camera_type == "camera2d") {
     diagnostics.error({"--camera-type", 0}, "the floor is seen by depth cameras only: camera3d");
   }

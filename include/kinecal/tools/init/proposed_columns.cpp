@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -190,21 +192,22 @@ void check_whole_arm(const Robot& robot, const ColumnOfJoint& found, const std::
   return all;
 }
 
-/// A table without a header: the joints of the only arm, then x, y, z.
+/// A table without a header: the joints of the only arm, then so many further columns.
+/// @param further  3: x, y, z
 [[nodiscard]] ColumnOfJoint joints_by_count(const Robot& robot, const ReadTable& table,
-                                            const std::string& file) {
+                                            const std::string& file, std::size_t further) {
   std::set<std::vector<std::string>> fitting;
   for (const std::string& arm : propose_arms(robot)) {
     const std::vector<std::string> joints = driven_joints(robot, arm);
-    if (joints.size() + 3 == table.columns.size()) fitting.insert(joints);
+    if (joints.size() + further == table.columns.size()) fitting.insert(joints);
   }
   if (fitting.size() != 1) {
     throw InputError(fmt::format(
-        "{}: its first row has no names, and its {} columns are not the joints of {} arm and x, y, "
-        "z; "
+        "{}: its first row has no names, and its {} columns are not the joints of {} arm{}; "
         "give it a header, or say in columns.yaml what the columns mean: MANUAL, Samples from a "
         "table",
-        file, table.columns.size(), fitting.empty() ? "an" : "only one"));
+        file, table.columns.size(), fitting.empty() ? "an" : "only one",
+        further == 3 ? " and x, y, z" : ""));
   }
   ColumnOfJoint all;
   for (const std::string& joint : *fitting.begin()) {
@@ -215,9 +218,10 @@ void check_whole_arm(const Robot& robot, const ColumnOfJoint& found, const std::
 }
 
 /// @throws InputError  if columns do not tell the joints
+/// @param touched  by a tip: no further columns without names
 [[nodiscard]] ColumnOfJoint proposed_joints(const Robot& robot, const ReadTable& table,
-                                            const std::string& file) {
-  if (!table.header) return joints_by_count(robot, table, file);
+                                            const std::string& file, bool touched) {
+  if (!table.header) return joints_by_count(robot, table, file, touched ? 0 : 3);
   ColumnOfJoint joints = joints_by_name(robot, table);
   if (!joints.empty()) check_whole_arm(robot, joints, file);
   if (joints.empty()) joints = joints_by_number(robot, table, file);
@@ -503,19 +507,125 @@ struct PointColumns {
                      measured);
 }
 
+// Tables of a tip that touches something: joints, and which socket.
+
+/// The column that names the socket of each row; -1 if there is none.
+[[nodiscard]] int socket_column(const ReadTable& table) {
+  const std::set<std::string> names = {"socket", "sockets", "place", "hole", "nest",    "seat",
+                                       "cone",   "station", "point", "ball", "fixture", "marker"};
+  for (int c = 0; c < static_cast<int>(table.columns.size()) && table.header; ++c) {
+    const std::vector<std::string>& words = table.columns[static_cast<std::size_t>(c)].words;
+    if (!words.empty() && names.contains(words.front())) return c;
+  }
+  return -1;
+}
+
+/// The sockets that a column names, each once.
+[[nodiscard]] std::set<std::string> sockets_in(const ReadTable& table, int column) {
+  const std::vector<std::string>& texts = table.columns[static_cast<std::size_t>(column)].texts;
+  return {texts.begin(), texts.end()};
+}
+
+/// What the tip touches, by the columns if it is not given; nullopt: nothing, there are measured points.
+/// @throws InputError  if the table has joints only
+[[nodiscard]] std::optional<InitTarget> touched_target(const ReadTable& table,
+                                                       std::optional<InitTarget> given,
+                                                       const std::string& file) {
+  if (given) return is_touched(*given) ? given : std::nullopt;
+  if (!table.header || !triples(table, {}).empty()) return std::nullopt;
+  if (socket_column(table) >= 0) return InitTarget::sockets;
+  std::string words;
+  for (const InitTargetWord& word : kInitTargets) {
+    if (is_touched(word.target)) words += (words.empty() ? "" : ", ") + std::string(word.word);
+  }
+  throw InputError(fmt::format(
+      "{}: no three columns are called x, y, z (of a tracker's point).  If the table has "
+      "joints alone, say what the tip touched in each row: --target with one of {}; of "
+      "several sockets, a column 'socket' names the one of each row; {}",
+      file, words, table.header_text));
+}
+
+/// @throws InputError  if sockets have no names
+[[nodiscard]] std::string touched_text(const Robot& robot, const ReadTable& table,
+                                       InitTarget target, const std::string& file,
+                                       const std::string& sockets_file) {
+  InitAnswers answers;
+  answers.target = target;
+  if (!sockets_file.empty()) answers.layout = {Vector3<double>::Zero()};
+  answers = with_proposals(robot, answers);
+  const bool is_pose = target == InitTarget::plane || target == InitTarget::line;
+  std::string touched = "   frame: " + answers.places.front() + "\n";
+  if (is_pose) {
+    touched +=
+        fmt::format("   form: quaternion\n   constant_poses: [[0, 0, 0, 0, 0, 0, 1]]  # {}\n",
+                    target == InitTarget::plane ? "the plane z = 0" : "the z axis");
+  } else if (target != InitTarget::sockets) {
+    touched += "   constant: [0, 0, 0]\n";
+  } else {
+    const int column = socket_column(table);
+    if (column < 0) {
+      throw InputError(
+          fmt::format("{}: no column says which socket the tip was in; call it 'socket'; {}", file,
+                      table.header_text));
+    }
+    const std::string name = column_name(table, column);
+    touched = sockets_file.empty()
+                  ? fmt::format(
+                        "   frame: socket  # and the cell: socket_{}\n   frame_column: {}\n"
+                        "   constant: [0, 0, 0]\n",
+                        *sockets_in(table, column).begin(), name)
+                  : fmt::format(
+                        "   frame: {}\n   table: {}  # where the sockets are\n   match: {}\n"
+                        "   points: [[x, y, z]]\n",
+                        answers.places.front(), name_to_yaml(sockets_file), name);
+  }
+  return fmt::format(
+      "\nobservations:\n - sensor: {}  # the tip, which is there in every row\n   frame: {}\n"
+      "   constant: [0, 0, 0]\n - sensor: {}  # what it touches\n{}",
+      holder_of(answers), answers.target_frame, tracker_of(answers), touched);
+}
+
 }  // namespace
 }  // namespace detail
 
-std::string proposed_columns(const Robot& robot, std::string_view text, const std::string& file) {
+std::string sockets_at_distance(std::string_view text, const std::string& file, double length) {
   using namespace detail;
   const ReadTable table = read_table(text, file);
-  const ColumnOfJoint joints = proposed_joints(robot, table, file);
+  const int column = socket_column(table);
+  if (column < 0) {
+    throw InputError(file +
+                     ": --length is the distance of two sockets, and no column is called "
+                     "'socket'");
+  }
+  const std::set<std::string> sockets = sockets_in(table, column);
+  if (sockets.size() != 2) {
+    throw InputError(
+        fmt::format("{}: --length is the distance of two sockets, and column '{}' names {}; write "
+                    "the places of "
+                    "more into sockets.csv beside the configuration: {}, x, y, z in metres",
+                    file, table.columns[static_cast<std::size_t>(column)].name, sockets.size(),
+                    table.columns[static_cast<std::size_t>(column)].name));
+  }
+  return fmt::format("{},x,y,z\n{},0,0,0\n{},{},0,0\n", column_name(table, column),
+                     *sockets.begin(), *std::next(sockets.begin()), length);
+}
+
+std::string proposed_columns(const Robot& robot, std::string_view text, const std::string& file,
+                             std::optional<InitTarget> given, const std::string& sockets_file) {
+  using namespace detail;
+  const ReadTable table = read_table(text, file);
+  const std::optional<InitTarget> touched = touched_target(table, given, file);
+  const ColumnOfJoint joints = proposed_joints(robot, table, file, touched.has_value());
   std::set<int> taken;
   for (const auto& [joint, column] : joints) taken.insert(column);
   const ColumnOfJoint velocities = proposed_velocities(robot, table, joints);
   for (const auto& [joint, column] : velocities) taken.insert(column);
-  const std::vector<PointColumns> points =
-      table.header ? measured_points(table, taken, file) : std::vector{last_three(table)};
+  std::vector<PointColumns> points;
+  if (!touched) {
+    points = table.header ? measured_points(table, taken, file) : std::vector{last_three(table)};
+  } else if (*touched == InitTarget::sockets) {
+    taken.insert(socket_column(table));
+  }
   for (const PointColumns& point : points) {
     taken.insert(point.xyz.begin(), point.xyz.end());
     taken.insert(point.deviation.begin(), point.deviation.end());
@@ -536,7 +646,8 @@ std::string proposed_columns(const Robot& robot, std::string_view text, const st
              separators.at(table.separator), table.header) +
          turning + sliding + velocities_text(robot, table, velocities, true, turning) +
          velocities_text(robot, table, velocities, false, sliding) +
-         observations_text(robot, table, points) +
+         (touched ? touched_text(robot, table, *touched, file, sockets_file)
+                  : observations_text(robot, table, points)) +
          (unused.empty() ? "" : "\n# Not used: " + unused + "\n");
 }
 

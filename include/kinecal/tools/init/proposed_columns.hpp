@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "kinecal/kinematics/robot.hpp"
+#include "kinecal/tools/init/init_answers.hpp"
 
 namespace kinecal {
 
@@ -19,11 +21,22 @@ inline constexpr const char* kProposedColumnsMark = "# Columns for 'kinecal init
 /// and the like, if an arm of the robot has as many.  Velocities are dq1 dq2 ..., qd1, or joints' names with "_velocity",
 /// "_vel" or a unit per second; they are proposed if every joint has one in every row.  Points are three columns x, y, z with a common rest of their names;
 /// of several, those that are called after a tracker.  A table without a header has the joints of the arm, then x, y, z.
+/// Of a target that a tip touches, a table has the joints, and of several sockets a column that names the one of each row.
 /// @param robot  whose joints the columns hold
 /// @param table  the text
 /// @param file   its name, in messages
+/// @param target  what the tip touches, or a tracker; nullopt: by the columns
+/// @param sockets_file  of sockets with known places, with the columns socket, x, y, z in metres; empty: not known
 /// @throws InputError  "file: ...": what neither names nor values tell
 [[nodiscard]] std::string proposed_columns(const Robot& robot, std::string_view table,
-                                           const std::string& file);
+                                           const std::string& file,
+                                           std::optional<InitTarget> target = {},
+                                           const std::string& sockets_file = {});
+
+/// The table of two sockets whose distance is known, for a table of joints that names the one of each row.
+/// @param length  metres
+/// @throws InputError  "file: ..." if no column names them, or it names another number of sockets
+[[nodiscard]] std::string sockets_at_distance(std::string_view table, const std::string& file,
+                                              double length);
 
 }  // namespace kinecal

@@ -198,6 +198,22 @@ InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
   if (target == InitTarget::tracker) {
     propose(answers.target_frame, propose_frame(robot, {"smr", "reflector"}));
     propose(answers.tracker_frame, propose_frame(robot, {"tracker_frame", "laser_frame"}));
+  } else if (is_touched(target)) {
+    propose(answers.target_frame, propose_frame(robot, {"tip", "tool_tip"}));
+    if (!answers.places.empty()) return answers;
+    if (target == InitTarget::sockets && answers.length && answers.layout.empty()) {
+      answers.layout = {Vector3<double>::Zero(), {*answers.length, 0.0, 0.0}};
+    }
+    if (target == InitTarget::sockets && answers.layout.empty()) {
+      answers.places = {propose_frame(robot, {"socket_1"}), propose_frame(robot, {"socket_2"})};
+      return answers;
+    }
+    const char* own = target == InitTarget::plane     ? "plane"
+                      : target == InitTarget::line    ? "line"
+                      : target == InitTarget::sockets ? "sockets"
+                      : has_length(target)            ? "center"
+                                                      : "place";
+    answers.places = {propose_frame(robot, {own, std::string("touched_") + own})};
   } else if (needs_target_frame(target)) {
     const char* own = answers.board == InitBoard::checkerboard ? "checkerboard"
                       : answers.board == InitBoard::apriltag   ? "apriltag_grid"

@@ -1,0 +1,163 @@
+// Targets that the tip of an arm touches: which zeros they show, and that a calibration finds these with ± that cover.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
+#include "kinecal/tools/init/determined_offsets.hpp"
+#include "kinecal/tools/init/initial_config.hpp"
+#include "support/programs.hpp"
+#include "support/repetitions.hpp"
+
+namespace kinecal {
+namespace {
+
+constexpr InitTarget kTouched[] = {InitTarget::point, InitTarget::sockets, InitTarget::plane,
+                                   InitTarget::line,  InitTarget::sphere,  InitTarget::bar};
+
+/// An arm of the examples, whose zeros are wrong, with a tip that is not in its URDF.
+class TouchingArm {
+ public:
+  TouchingArm(const std::string& name, std::string arm)
+      : robot_(
+            read_urdf(test::source_folder() + "/examples/robots/" + name + "/" + name + ".urdf")),
+        arm_(std::move(arm)) {}
+
+  [[nodiscard]] const Robot& robot() const { return robot_; }
+  [[nodiscard]] InitAnswers answers(InitTarget target) const {
+    InitAnswers answers;
+    answers.target = target;
+    answers.arm = arm_;
+    if (target == InitTarget::bar) answers.length = 0.2;
+    answers = with_proposals(robot_, answers);
+    return answers;
+  }
+  [[nodiscard]] MeasuredTarget measured(InitTarget target) const {
+    MeasuredTarget touched{answers(target).base, arm_, answers(target).base};
+    touched.target_frame = "tip";
+    touched.is_point = true;
+    touched.sensor_frame = "place";
+    touched.contact = target == InitTarget::plane    ? Contact::plane
+                      : target == InitTarget::line   ? Contact::line
+                      : target == InitTarget::sphere ? Contact::sphere
+                      : target == InitTarget::bar    ? Contact::sphere
+                                                     : Contact::point;
+    touched.places = target == InitTarget::sockets ? 2 : 1;
+    touched.radius_known = target == InitTarget::bar;
+    return touched;
+  }
+  /// Joints whose zeros a target shows, of all that move the arm: "01111 0".
+  [[nodiscard]] std::string shown(InitTarget target) const {
+    const MeasuredTarget touched = measured(target);
+    std::string text;
+    for (const OffsetEffect& effect :
+         offset_effects(robot_, touched, {}, driven_joints(robot_, touched)).offsets) {
+      text += effect.determined ? 'x' : '-';
+    }
+    return text;
+  }
+
+  /// Samples as an arm records them whose joints are off by wrong().
+  /// @param noise  of the tip's place, metres
+  [[nodiscard]] std::vector<Sample> samples(InitTarget target, unsigned seed, double noise) {
+    std::mt19937 random(seed);
+    const MeasuredTarget touched = measured(target);
+    const InitAnswers named = answers(target);
+    std::vector<Sample> all;
+    wrong_.clear();
+    for (const std::string& joint : driven_joints(robot_, touched)) {
+      wrong_[joint] = std::uniform_real_distribution<double>(-0.03, 0.03)(random);
+    }
+    std::normal_distribution<double> jitter(0.0, noise / 0.5);  // radians, half a metre away
+    std::size_t number = 0;
+    for (const auto& pose : touching_poses(robot_, touched)) {
+      Sample& sample = all.emplace_back();
+      for (const auto& [joint, position] : pose) {
+        sample.joint_names.push_back(joint);
+        sample.joint_positions.push_back(position - wrong_.at(joint) + jitter(random));
+      }
+      const std::string& place = named.places.at(number++ % named.places.size());
+      Feature held{place, Vector3<double>::Zero()};
+      if (target == InitTarget::plane || target == InitTarget::line) {
+        held.rotation = Matrix3<double>::Identity();
+      }
+      sample.observations = {{"arm", {{"tip", Vector3<double>::Zero()}}}, {"touched", {held}}};
+    }
+    return all;
+  }
+  [[nodiscard]] const std::map<std::string, double>& wrong() const { return wrong_; }
+
+  [[nodiscard]] CalibratedRobot calibrated(InitTarget target, std::vector<Sample> samples) const {
+    Diagnostics diagnostics;
+    const std::string text = initial_config(robot_, answers(target));
+    return calibrate_robot({.robot = robot_,
+                            .config = parse_config(text, "calibrate.yaml", diagnostics),
+                            .samples = std::move(samples)});
+  }
+
+ private:
+  Robot robot_;
+  std::string arm_;
+  std::map<std::string, double> wrong_;  ///< by joint: true minus recorded position
+};
+
+TouchingArm six_joints() {
+  return {"ur5e", "tool0"};
+}
+TouchingArm seven_joints() {
+  return {"panda", "panda_hand"};
+}
+
+TEST(TouchedTargets, ShowAllZerosButTheFirstAndTheLast) {
+  std::cout << "zeros shown (x) by what the tip touches\n";
+  for (const InitTarget target : kTouched) {
+    const std::string six = six_joints().shown(target), seven = seven_joints().shown(target);
+    std::cout << fmt::format("  {:8} {:8} {:8}\n", to_string(target), six, seven);
+    EXPECT_EQ(six, "-xxxx-") << to_string(target);
+    EXPECT_EQ(seven, "-xxxxx-") << to_string(target);
+  }
+}
+
+class TouchedTarget : public testing::TestWithParam<InitTarget> {};
+
+TEST_P(TouchedTarget, FindsTheZerosWithPlusMinusThatCover) {
+  double sum = 0.0;
+  int count = 0;
+  for (TouchingArm arm : {six_joints(), seven_joints()}) {
+    for (unsigned seed = 1; seed <= static_cast<unsigned>(test::repetitions(20, 3)); ++seed) {
+      const std::vector<Sample> samples = arm.samples(GetParam(), seed, 2e-4);
+      ASSERT_GE(samples.size(), 20u);
+      const CalibratedRobot found = arm.calibrated(GetParam(), samples);
+      EXPECT_TRUE(found.is_usable()) << found.judgement.reasons.front();
+      const ParameterTable& table = found.result.table;
+      for (const auto& [joint, wrong] : arm.wrong()) {
+        const auto deviation = found.assessments.back().deviation(table.find(joint));
+        if (!deviation) continue;
+        const double off = (table[joint].value - wrong) / *deviation;
+        EXPECT_LE(std::abs(off), 6.0) << joint << " seed " << seed;
+        sum += off * off;
+        ++count;
+      }
+    }
+  }
+  ASSERT_GT(count, 0);
+  std::cout << fmt::format("{}: error over its ±, rms {:.2f} of {}\n", to_string(GetParam()),
+                           std::sqrt(sum / count), count);
+  EXPECT_LE(sum / count, 2.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, TouchedTarget, testing::ValuesIn(kTouched),
+                         [](const auto& of) { return std::string(to_string(of.param)); });
+
+}  // namespace
+}  // namespace kinecal
