@@ -1,6 +1,7 @@
 // kinecal capture: a robot moves from pose to pose, finders look, samples are written at once.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include <optional>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include "commands.hpp"
 #include "input.hpp"
@@ -69,6 +71,18 @@ std::vector<CapturePose> read_poses(const std::string& path, const CaptureConfig
 
 /// A finder of a session, with settings of any type.
 SessionFinder finder_of(const CaptureFinder& finder, const Robot& robot, AnyRobot& hardware) {
+  if (const auto* touch = std::get_if<TouchFinder>(&finder.settings)) {
+    const auto joints_only = [&arm = hardware.arm](Stamp after) {
+      MeasuredJoints joints = arm.next_joints(after);
+      View view;
+      view.stamp = joints.stamp;
+      view.joints = std::move(joints);
+      return view;
+    };
+    return {finder.name, joints_only,
+            [touch = *touch](const View& view) { return touch.find(view); },
+            [](const View&) { return std::string(); }};
+  }
   AnyCamera& camera = hardware.cameras.at(finder.name);
   const FinderSettings settings = on_robot(finder, robot);
   const auto fault = [settings](const View& view) { return unusable(settings, view); };
@@ -176,15 +190,38 @@ void print_pose(std::size_t number, std::size_t count, const CapturedPose& captu
   std::fflush(stdout);
 }
 
+/// The places that a tip may touch, if there are several: one of them in each pose.
+std::vector<std::string> places_to_touch(const CaptureConfig& config) {
+  std::vector<std::string> names;
+  for (const CaptureFinder& finder : config.finders) {
+    if (std::holds_alternative<TouchFinder>(finder.settings)) names.push_back(finder.name);
+  }
+  return names.size() > 1 ? names : std::vector<std::string>{};
+}
+
 /// The poses of the session: a list, or wherever a person puts the robot.
-NextPose next_pose(const CaptureOptions& options, const std::vector<CapturePose>& poses) {
+NextPose next_pose(const CaptureOptions& options, const CaptureConfig& config,
+                   const std::vector<CapturePose>& poses) {
   if (!options.manual) return poses_of(poses);
-  return []() -> std::optional<CapturePose> {
-    say("put the robot into the next pose, then press Enter; q ends the session\n");
-    std::fflush(stdout);
+  return [places = places_to_touch(config)]() -> std::optional<CapturePose> {
     std::string line;
-    if (!std::getline(std::cin, line) || line == "q") return std::nullopt;
-    return CapturePose{};
+    while (true) {
+      if (places.empty()) {
+        say("put the robot into the next pose, then press Enter; q ends the session\n");
+      } else {
+        say("put the tip into one of {}, then write its name and press Enter; q ends the session\n",
+            fmt::join(places, ", "));
+      }
+      std::fflush(stdout);
+      if (!std::getline(std::cin, line) || line == "q") return std::nullopt;
+      if (places.empty()) return CapturePose{};
+      // "2" is socket_2.
+      const auto named = std::find_if(places.begin(), places.end(), [&](const std::string& name) {
+        return name == line || (!line.empty() && name.ends_with("_" + line));
+      });
+      if (named != places.end()) return CapturePose{{}, {}, {*named}};
+      say("'{}' is none of them\n", line);
+    }
   };
 }
 
@@ -345,7 +382,7 @@ struct Session {
     for (const CaptureFinder& finder : config.finders) {
       finders.push_back(finder_of(finder, robot, hardware));
     }
-    const NextPose from_list = next_pose(options, poses);
+    const NextPose from_list = next_pose(options, config, poses);
     const NextPose next = [&]() -> std::optional<CapturePose> {
       if (Interruption::is_asked() || (follower && follower->enough())) return std::nullopt;
       return from_list();

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <utility>
+#include <variant>
 
 #include "input.hpp"
 #include "interruption.hpp"
@@ -87,6 +88,7 @@ AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, cons
   parts->arm = std::make_unique<RosArm>(parts->bridge, arm);
   AnyRobot any{any_arm(*parts->arm), {}, {}};
   for (const CaptureFinder& finder : config.finders) {
+    if (std::holds_alternative<TouchFinder>(finder.settings)) continue;
     parts->cameras.push_back(
         std::make_unique<RosCamera>(parts->bridge, camera_topics(finder, topics.depth)));
     any.cameras[finder.name] = any_camera(*parts->cameras.back());

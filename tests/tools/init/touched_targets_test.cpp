@@ -16,7 +16,7 @@
 #include "kinecal/procedure/calibrate_robot.hpp"
 #include "kinecal/tools/init/determined_offsets.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
-#include "support/programs.hpp"
+#include "support/paths.hpp"
 #include "support/repetitions.hpp"
 
 namespace kinecal {

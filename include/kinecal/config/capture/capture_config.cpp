@@ -242,6 +242,17 @@ inline void read_tags(ConfigMap& map, CornerKind corners, AprilTagSettings& tags
   return finder;
 }
 
+[[nodiscard]] inline TouchFinder read_touch_finder(ConfigMap& map) {
+  TouchFinder finder;
+  finder.chain_sensor = map.text("chain_sensor_name").value_or(finder.chain_sensor);
+  finder.tip = map.text("tip_frame").value_or(finder.tip);
+  finder.touched_sensor = map.text("touched_sensor_name").value_or(finder.touched_sensor);
+  finder.frame = map.text("frame_id").value_or(finder.frame);
+  finder.has_direction = map.flag("has_direction", finder.has_direction);
+  finder.place = {map.number("x", 0.0), map.number("y", 0.0), map.number("z", 0.0)};
+  return finder;
+}
+
 /// Reads a target whose corners are of a kind.
 template <auto read, CornerKind corners>
 [[nodiscard]] FinderSettings with_corners(ConfigMap& map) {
@@ -271,6 +282,7 @@ inline const std::map<std::string, FinderSettings (*)(ConfigMap&)> kFinderTypes 
     {"ScanFinder", [](ConfigMap& map) -> FinderSettings { return read_scan_finder(map); }},
     {"RobotFinder", [](ConfigMap& map) -> FinderSettings { return read_robot_finder(map); }},
     {"MaskFinder", [](ConfigMap& map) -> FinderSettings { return read_mask_finder(map); }},
+    {"TouchFinder", [](ConfigMap& map) -> FinderSettings { return read_touch_finder(map); }},
 };
 
 namespace {

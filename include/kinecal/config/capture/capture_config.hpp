@@ -24,6 +24,7 @@
 #include "kinecal/capture/finders/plane_finder.hpp"
 #include "kinecal/capture/finders/robot_finder.hpp"
 #include "kinecal/capture/finders/scan_finder.hpp"
+#include "kinecal/capture/finders/touch_finder.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/robot.hpp"
 
@@ -39,7 +40,7 @@ struct CaptureChain {
 /// Settings of any finder: itself, or what a `FinderType` is made from.
 using FinderSettings =
     std::variant<LedFinder, CheckerboardSettings, AprilTagSettings, CharucoSettings,
-                 CircleGridSettings, PlaneFinder, ScanFinder, RobotFinder, MaskFinder>;
+                 CircleGridSettings, PlaneFinder, ScanFinder, RobotFinder, MaskFinder, TouchFinder>;
 
 /// A finder and the source of its views.
 struct CaptureFinder {

@@ -109,14 +109,42 @@ namespace {
              name_to_yaml(holder_of(answers)), name_to_yaml(answers.arm));
 }
 
+/// What the tip touches: a finder for each place.
+[[nodiscard]] std::string touches_text(const InitAnswers& answers) {
+  const bool has_layout = !answers.layout.empty();
+  const std::size_t count = has_layout ? answers.layout.size() : answers.places.size();
+  const bool has_direction =
+      answers.target == InitTarget::plane || answers.target == InitTarget::line;
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string& frame = answers.places[has_layout ? 0 : i];
+    text += fmt::format(
+        "  {}:\n    type: TouchFinder\n    chain_sensor_name: {}\n    tip_frame: {}\n"
+        "    touched_sensor_name: {}\n    frame_id: {}\n",
+        has_layout ? fmt::format("socket_{}", i + 1) : frame, name_to_yaml(holder_of(answers)),
+        name_to_yaml(answers.target_frame), name_to_yaml(tracker_of(answers)), name_to_yaml(frame));
+    if (has_direction) text += "    has_direction: true\n";
+    if (has_layout) {
+      const Vector3<double>& at = answers.layout[i];
+      text += fmt::format("    x: {}\n    y: {}\n    z: {}\n", at.x(), at.y(), at.z());
+    }
+  }
+  return text;
+}
+
 }  // namespace
 }  // namespace detail
 
 std::string initial_capture(const Robot& robot, const InitAnswers& given) {
   const InitAnswers answers = with_proposals(robot, given);
-  // No finder reports where a reflector or a tip is, or LEDs in pixels; clouds and masks are taken as they are.
+  // No finder reports where a reflector is, or LEDs in pixels; clouds and masks are taken as they are.
   const bool in_pixels = answers.camera_type == "camera2d";
-  if (!needs_camera(answers.target) || answers.target == InitTarget::robot) return "";
+  if (answers.target == InitTarget::tracker || answers.target == InitTarget::robot) return "";
+  if (is_touched(answers.target)) {
+    return fmt::format("{}: what the tip touches, for `kinecal capture --manual`.\n\nfeatures:\n",
+                       kInitialCaptureMark) +
+           detail::touches_text(answers);
+  }
   if (answers.target == InitTarget::leds && in_pixels) return "";
   std::string text = fmt::format(
       "{}: what to look for, with the names of its configuration.\n"
