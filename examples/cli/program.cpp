@@ -381,7 +381,7 @@ void add_init(CLI::App& command, InitOptions& options) {
           "gripper); world_checkerboard, world_apriltag or world_charuco; tracker; ground, which "
           "also goes with another: leds,ground; robot (its own surface); or what the tip touches, "
           "with "
-          "nothing but joints recorded: point, tool, sockets, plane, line, sphere, bar")
+          "nothing but joints recorded: point, tool, sockets, plane, line, sphere, bar, distance")
       ->delimiter(',')
       ->type_name(one_of("TARGET", target_words()));
   command

@@ -22,8 +22,9 @@
 namespace kinecal {
 namespace {
 
-constexpr InitTarget kTouched[] = {InitTarget::point, InitTarget::sockets, InitTarget::plane,
-                                   InitTarget::line,  InitTarget::sphere,  InitTarget::bar};
+constexpr InitTarget kTouched[] = {InitTarget::point,   InitTarget::sockets, InitTarget::plane,
+                                   InitTarget::line,    InitTarget::sphere,  InitTarget::bar,
+                                   InitTarget::distance};
 
 /// An arm of the examples, whose zeros are wrong, with a tip that is not in its URDF.
 class TouchingArm {
@@ -45,13 +46,14 @@ class TouchingArm {
   [[nodiscard]] MeasuredTarget measured(InitTarget target) const {
     MeasuredTarget touched{answers(target).base, arm_, answers(target).base};
     touched.target_frame = "tip";
-    touched.is_point = true;
+    touched.is_point = target != InitTarget::distance;
     touched.sensor_frame = "place";
-    touched.contact = target == InitTarget::plane    ? Contact::plane
-                      : target == InitTarget::line   ? Contact::line
-                      : target == InitTarget::sphere ? Contact::sphere
-                      : target == InitTarget::bar    ? Contact::sphere
-                                                     : Contact::point;
+    touched.contact = target == InitTarget::plane      ? Contact::plane
+                      : target == InitTarget::distance ? Contact::plane
+                      : target == InitTarget::line     ? Contact::line
+                      : target == InitTarget::sphere   ? Contact::sphere
+                      : target == InitTarget::bar      ? Contact::sphere
+                                                       : Contact::point;
     touched.places = target == InitTarget::sockets ? 2 : 1;
     touched.radius_known = target == InitTarget::bar;
     return touched;
@@ -80,7 +82,9 @@ class TouchingArm {
     }
     std::normal_distribution<double> jitter(0.0, noise / 0.5);  // radians, half a metre away
     std::size_t number = 0;
-    for (const auto& pose : touching_poses(robot_, touched)) {
+    const TouchingPoses poses = touching_poses(robot_, touched);
+    for (const auto& pose : poses.positions) {
+      const double distance = poses.distances.empty() ? 0.0 : poses.distances.at(number);
       Sample& sample = all.emplace_back();
       for (const auto& [joint, position] : pose) {
         sample.joint_names.push_back(joint);
@@ -88,10 +92,11 @@ class TouchingArm {
       }
       const std::string& place = named.places.at(number++ % named.places.size());
       Feature held{place, Vector3<double>::Zero()};
-      if (target == InitTarget::plane || target == InitTarget::line) {
+      if (touched.contact == Contact::plane || touched.contact == Contact::line) {
         held.rotation = Matrix3<double>::Identity();
       }
-      sample.observations = {{"arm", {{"tip", Vector3<double>::Zero()}}}, {"touched", {held}}};
+      sample.observations = {{"arm", {{named.target_frame, Vector3<double>(0.0, 0.0, distance)}}},
+                             {"touched", {held}}};
     }
     return all;
   }

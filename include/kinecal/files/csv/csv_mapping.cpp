@@ -130,7 +130,8 @@ inline void read_csv_points(ConfigMap& map, const std::string& key, std::size_t 
     }
     std::array<CsvSum, 3> point;
     for (std::size_t i = 0; i < columns; ++i) {
-      point[i] = read_csv_sum(map, entry.value.items[i], entry.place);
+      const bool is_zero = config_text(entry.value.items[i]) == "0";  // columns count from 1
+      if (!is_zero) point[i] = read_csv_sum(map, entry.value.items[i], entry.place);
     }
     observation.points.push_back(std::move(point));
   }

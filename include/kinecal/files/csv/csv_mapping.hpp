@@ -20,7 +20,7 @@
 //    - sensor: tracker
 //      frame: tracker_frame
 //      unit: millimetres            # metres (default) or millimetres
-//      points: [[[tx, dx], [ty, dy], [tz, dz]]]   # a list of columns means their sum
+//      points: [[[tx, dx], [ty, dy], [tz, dz]]]   # a list of columns means their sum, 0: zero
 //    - sensor: camera
 //      frame: optical_frame
 //      pixels: [[u1, v1], [u2, v2]]
@@ -94,10 +94,10 @@ struct CsvObservation {
   std::string frame;    ///< in which its points are given
   CsvSum frame_column;  ///< one column that names the frame, behind `frame` and '_'; empty: `frame`
   CsvUnit unit;         ///< of the columns of its points
-  std::vector<std::array<CsvSum, 3>> points;      ///< the third sum of a pixel is empty: zero
-  std::vector<Vector3<double>> constants;         ///< metres
-  PoseForm form = {};                             ///< of its poses
-  std::vector<CsvSum> poses = {};                 ///< each: a column for each number of the form
+  std::vector<std::array<CsvSum, 3>> points;  ///< an empty sum is zero: the third one of a pixel
+  std::vector<Vector3<double>> constants;     ///< metres
+  PoseForm form = {};                         ///< of its poses
+  std::vector<CsvSum> poses = {};             ///< each: a column for each number of the form
   std::vector<Pose<double>> constant_poses = {};  ///< metres
   std::vector<int> ids;                           ///< of each feature; empty: not given here
   CsvSum id_columns;                              ///< one column for each; empty: see `ids`

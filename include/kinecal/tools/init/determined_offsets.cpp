@@ -80,6 +80,8 @@ class GeneratedPoses {
 
   /// Positions by joint.
   [[nodiscard]] const std::vector<NamedNumbers>& poses() const { return poses_; }
+  /// Of a distance sensor in each pose, metres; else empty.
+  [[nodiscard]] const std::vector<double>& distances() const { return distances_; }
 
   /// The points that the sensor measures in all poses (3 or, in pixels, 2 each).
   /// @param offsets      of joints
@@ -198,8 +200,9 @@ class GeneratedPoses {
         of_pose.erase(measured_.sensor_frame);
       }
       const Pose<double> sensor_T_target = seen_from(poses_[i], offsets, of_pose);
+      const double distance = distances_.empty() ? 0.0 : distances_[i];
       all.segment(static_cast<Eigen::Index>(i) * rows, rows) =
-          shown(sensor_T_target.translation - sockets_[socket_of(i)]);
+          shown(sensor_T_target * Vector3<double>(0.0, 0.0, distance) - sockets_[socket_of(i)]);
     }
     return all;
   }
@@ -234,12 +237,25 @@ class GeneratedPoses {
         sockets_.emplace_back(kApart * k, k > 1 ? kApart : 0.0, 0.0);
       }
       radius_ = measured_.contact == Contact::sphere ? kRadius : 0.0;
+      distances_.clear();
       for (int n = 0; n < kTries / 10 && poses_.size() < kPoses; ++n) {
         NamedNumbers pose = random_pose();
-        if (reach(pose, drives)) poses_.push_back(std::move(pose));
+        const bool touches = measured_.is_point ? reach(pose, drives) : measures(pose);
+        if (touches) poses_.push_back(std::move(pose));
       }
-      if (poses_.size() < kPoses / 3) poses_.clear();  // hardly reachable: another place
+      if (poses_.size() < kPoses / 3)
+        poses_.clear(), distances_.clear();  // hardly reachable: another place
     }
+  }
+
+  /// Whether a distance sensor measures the plane in a pose; keeps its distance.
+  [[nodiscard]] bool measures(const NamedNumbers& pose) {
+    constexpr double kLeast = 0.02, kMost = 0.6;  // metres
+    const Pose<double> seen = seen_from(pose, {}, {});
+    const double distance = -seen.translation.z() / seen.rotation(2, 2);
+    if (!(distance > kLeast && distance < kMost)) return false;
+    distances_.push_back(distance);
+    return true;
   }
 
   /// Moves a pose until the next contact is touched.
@@ -464,9 +480,9 @@ std::vector<std::string> driven_joints(const Robot& robot, const MeasuredTarget&
   return names;
 }
 
-std::vector<std::map<std::string, double>> touching_poses(const Robot& robot,
-                                                          const MeasuredTarget& measured) {
-  return detail::GeneratedPoses(robot, measured, {}).poses();
+TouchingPoses touching_poses(const Robot& robot, const MeasuredTarget& measured) {
+  const detail::GeneratedPoses generated(robot, measured, {});
+  return {generated.poses(), generated.distances()};
 }
 
 OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
@@ -484,7 +500,10 @@ OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
   }
   if (!many) add(measured.sensor_frame, poses.sensor_axes());
   for (const std::string& frame : frames) add(frame, detail::axes_of(false));
-  add(measured.target_frame, detail::axes_of(measured.is_point));
+  std::array<bool, 6> target_axes = detail::axes_of(measured.is_point);
+  if (measured.contact != Contact::none)
+    target_axes[5] = false;  // about the direction of a distance
+  add(measured.target_frame, target_axes);
 
   OffsetEffects effects;
   detail::Span span;

@@ -72,11 +72,17 @@ struct OffsetEffects {
 [[nodiscard]] std::vector<std::string> driven_joints(const Robot& robot,
                                                      const MeasuredTarget& measured);
 
-/// Random poses, as many as were found of 60, in which the tip touches what it touches: positions by joint.  Nothing looks for collisions.
+/// Poses in which a tip touches what it touches.
+struct TouchingPoses {
+  std::vector<std::map<std::string, double>>
+      positions;                  ///< of the joints, by name: radians or metres
+  std::vector<double> distances;  ///< that a distance sensor measures, metres; empty: a tip touches
+};
+
+/// Random ones, as many as were found of 60.  Nothing looks for collisions.
 /// @param measured  with a contact
 /// @throws RobotError  like make_chain()
-[[nodiscard]] std::vector<std::map<std::string, double>> touching_poses(
-    const Robot& robot, const MeasuredTarget& measured);
+[[nodiscard]] TouchingPoses touching_poses(const Robot& robot, const MeasuredTarget& measured);
 
 /// The effects of these joints' offsets.
 /// @param frames  joints whose frames are free

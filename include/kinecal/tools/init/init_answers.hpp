@@ -27,7 +27,8 @@ enum class InitTarget {
   plane,
   line,
   sphere,
-  bar
+  bar,
+  distance
 };
 
 /// The boards of `checkerboard` and `world_checkerboard`.
@@ -42,7 +43,7 @@ struct InitTargetWord {
 };
 
 /// All targets, in the order of questions.
-inline constexpr std::array<InitTargetWord, 17> kInitTargets = {{
+inline constexpr std::array<InitTargetWord, 18> kInitTargets = {{
     {InitTarget::leds, InitBoard::checkerboard, "leds",
      "LEDs (or other points at known places) on the gripper, seen by a camera"},
     {InitTarget::checkerboard, InitBoard::checkerboard, "checkerboard",
@@ -75,6 +76,8 @@ inline constexpr std::array<InitTargetWord, 17> kInitTargets = {{
      "nothing measures: the tip touches a ball"},
     {InitTarget::bar, InitBoard::checkerboard, "bar",
      "nothing measures: a ball bar from the tip to a socket"},
+    {InitTarget::distance, InitBoard::checkerboard, "distance",
+     "a dial gauge or a distance sensor on the arm, against a plane: one number a pose"},
 }};
 
 /// The name of a target on the command line.

@@ -412,7 +412,7 @@ bool free_arm_and_head(InitPlan& plan, const Robot& robot, const InitAnswers& an
 [[nodiscard]] MeasuredTarget touched_by_arm(const InitAnswers& answers) {
   MeasuredTarget touched{answers.base, answers.arm, answers.base};
   touched.target_frame = answers.target_frame;
-  touched.is_point = true;
+  touched.is_point = answers.target != InitTarget::distance;
   touched.sensor_frame = answers.places.front();
   touched.contact = contact_of(answers.target);
   touched.radius_known = answers.length.has_value();
@@ -437,6 +437,7 @@ void free_places(InitPlan& plan, const InitAnswers& answers) {
   const std::string& first = answers.places.front();
   switch (answers.target) {
     case InitTarget::plane:
+    case InitTarget::distance:
       free_axes(plan, first, "The plane: z = 0 of this frame, seen from link " + base + ".",
                 {false, false, true, true, true, false});
       break;
@@ -475,8 +476,11 @@ void free_places(InitPlan& plan, const InitAnswers& answers) {
                     answers.arm, answers.base));
   }
   const std::string tip = answers.target_frame;
-  const bool is_pose = target == InitTarget::plane || target == InitTarget::line;
-  add_chain_model(plan, "The arm: the tip is point (0, 0, 0) of frame " + tip + ".",
+  const bool is_pose = contact_of(target) == Contact::plane || contact_of(target) == Contact::line;
+  add_chain_model(plan,
+                  target == InitTarget::distance
+                      ? "The arm: the plane is at point (0, 0, distance) of frame " + tip + "."
+                      : "The arm: the tip is point (0, 0, 0) of frame " + tip + ".",
                   holder_of(answers), answers.arm);
   add_chain_model(plan, "What it touches, which stands still in this link.", tracker_of(answers),
                   answers.base);
@@ -495,10 +499,17 @@ void free_places(InitPlan& plan, const InitAnswers& answers) {
     }
   }
   free_places(plan, answers);
-  free_frame(plan, tip,
-             "Where the tip is in link " + name_to_yaml(answers.arm) +
-                 "; a point has no rotation.  The URDF does not contain this frame.",
-             true);
+  if (target == InitTarget::distance) {
+    free_axes(plan, tip,
+              "Where the sensor is in link " + name_to_yaml(answers.arm) +
+                  " and along which z it measures; the URDF does not contain this frame.",
+              {true, true, true, true, true, false});
+  } else {
+    free_frame(plan, tip,
+               "Where the tip is in link " + name_to_yaml(answers.arm) +
+                   "; a point has no rotation.  The URDF does not contain this frame.",
+               true);
+  }
   for (const std::string& place : answers.places) add_initial_value(plan, place, "");
   plan.initial_values.front().why =
       "Zeros are no guess: kinecal searches for what the URDF does not have.";
@@ -511,7 +522,7 @@ void free_places(InitPlan& plan, const InitAnswers& answers) {
   }
   InitEntry block{
       "The tip is there in every sample.  The noise is what residuals show.", "contact", {}};
-  const char* type = target == InitTarget::plane             ? "point_on_plane"
+  const char* type = contact_of(target) == Contact::plane    ? "point_on_plane"
                      : target == InitTarget::line            ? "point_on_line"
                      : contact_of(target) == Contact::sphere ? "point_distance"
                                                              : "chain3d_to_chain3d";

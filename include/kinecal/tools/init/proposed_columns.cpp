@@ -520,6 +520,17 @@ struct PointColumns {
   return -1;
 }
 
+/// The column of a distance sensor or dial gauge; -1 if there is none.
+[[nodiscard]] int distance_column(const ReadTable& table) {
+  const std::set<std::string> names = {"distance", "dist",    "gauge", "dial",
+                                       "range",    "reading", "height"};
+  for (int c = 0; c < static_cast<int>(table.columns.size()) && table.header; ++c) {
+    const TableColumn& column = table.columns[static_cast<std::size_t>(c)];
+    if (column.is_number && has_word(column, names)) return c;
+  }
+  return -1;
+}
+
 /// The sockets that a column names, each once.
 [[nodiscard]] std::set<std::string> sockets_in(const ReadTable& table, int column) {
   const std::vector<std::string>& texts = table.columns[static_cast<std::size_t>(column)].texts;
@@ -553,7 +564,21 @@ struct PointColumns {
   answers.target = target;
   if (!sockets_file.empty()) answers.layout = {Vector3<double>::Zero()};
   answers = with_proposals(robot, answers);
-  const bool is_pose = target == InitTarget::plane || target == InitTarget::line;
+  const bool is_pose =
+      target == InitTarget::plane || target == InitTarget::line || target == InitTarget::distance;
+  std::string tip = "   constant: [0, 0, 0]\n";
+  if (target == InitTarget::distance) {
+    const int column = distance_column(table);
+    if (column < 0) {
+      throw InputError(fmt::format("{}: no column is called 'distance', 'gauge' or 'dial'; {}",
+                                   file, table.header_text));
+    }
+    constexpr double kMostMetres = 2.0;
+    tip = fmt::format("   {}\n   points: [[0, 0, {}]]\n",
+                      unit_text(table, {column}, kMostMetres, NamedUnit::metres, "metres",
+                                NamedUnit::millimetres, "millimetres"),
+                      column_name(table, column));
+  }
   std::string touched = "   frame: " + answers.places.front() + "\n";
   if (is_pose) {
     touched +=
@@ -581,8 +606,8 @@ struct PointColumns {
   }
   return fmt::format(
       "\nobservations:\n - sensor: {}  # the tip, which is there in every row\n   frame: {}\n"
-      "   constant: [0, 0, 0]\n - sensor: {}  # what it touches\n{}",
-      holder_of(answers), answers.target_frame, tracker_of(answers), touched);
+      "{} - sensor: {}  # what it touches\n{}",
+      holder_of(answers), answers.target_frame, tip, tracker_of(answers), touched);
 }
 
 }  // namespace
@@ -625,6 +650,8 @@ std::string proposed_columns(const Robot& robot, std::string_view text, const st
     points = table.header ? measured_points(table, taken, file) : std::vector{last_three(table)};
   } else if (*touched == InitTarget::sockets) {
     taken.insert(socket_column(table));
+  } else if (*touched == InitTarget::distance) {
+    taken.insert(distance_column(table));
   }
   for (const PointColumns& point : points) {
     taken.insert(point.xyz.begin(), point.xyz.end());

@@ -199,7 +199,9 @@ InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
     propose(answers.target_frame, propose_frame(robot, {"smr", "reflector"}));
     propose(answers.tracker_frame, propose_frame(robot, {"tracker_frame", "laser_frame"}));
   } else if (is_touched(target)) {
-    propose(answers.target_frame, propose_frame(robot, {"tip", "tool_tip"}));
+    propose(answers.target_frame, target == InitTarget::distance
+                                      ? propose_frame(robot, {"gauge", "distance_sensor"})
+                                      : propose_frame(robot, {"tip", "tool_tip"}));
     if (!answers.places.empty()) return answers;
     if (target == InitTarget::sockets && answers.length && answers.layout.empty()) {
       answers.layout = {Vector3<double>::Zero(), {*answers.length, 0.0, 0.0}};
@@ -208,7 +210,8 @@ InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
       answers.places = {propose_frame(robot, {"socket_1"}), propose_frame(robot, {"socket_2"})};
       return answers;
     }
-    const char* own = target == InitTarget::plane     ? "plane"
+    const bool is_plane = target == InitTarget::plane || target == InitTarget::distance;
+    const char* own = is_plane                        ? "plane"
                       : target == InitTarget::line    ? "line"
                       : target == InitTarget::sockets ? "sockets"
                       : has_length(target)            ? "center"
