@@ -362,6 +362,8 @@ class GeneratedPoses {
   std::vector<Vector3<double>>
       sockets_;          ///< that the tip touches, in the sensor's frame: one, or several
   double radius_ = 0.0;  ///< of a sphere that the tip touches, metres
+  std::vector<double>
+      distances_;  ///< that a distance sensor measures in each pose, metres; else empty
 };
 
 /// Of an offset's effect, what must be left beside free frames.  With a length of 0.5 m, an offset
