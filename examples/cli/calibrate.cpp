@@ -194,6 +194,7 @@ CalibratedRobot fit_and_judge(const CalibrateOptions& options, PreparedCalibrati
   calibrating.solving = solve_options(options);
   calibrating.solving.meter = line->meter();
   calibrating.folds = options.folds;
+  calibrating.between = options.between;
   calibrating.keep_outliers = options.keep_outliers;
   judge_files_of(options, prepared.robot, calibrating);
   calibrating.progress = progress_line();

@@ -37,10 +37,15 @@ struct InputOptions {
 
 /// Files of the robot's own programs that the calibration is written into; empty: none.
 struct RobotFileOptions {
-  std::string kinematics;          ///< origins, YAML
-  std::string homing;              ///< homing offsets of servos, JSON of LeRobot
-  std::string servos = "feetech";  ///< their make
-  std::string xacro;               ///< what the URDF was made of
+  std::vector<std::string> kinematics;  ///< origins, YAML: FILE, or PREFIX=FILE of each arm
+  std::string zeros;                    ///< list of zeros, YAML
+  bool degrees = false;                 ///< of these: else radians
+  std::string homing;                   ///< homing offsets of servos, JSON of LeRobot
+  std::string servos = "feetech";       ///< their make
+  std::string xacro;                    ///< what the URDF was made of
+
+  /// Their names; empty ones among them.
+  [[nodiscard]] std::vector<std::string> files() const;
 };
 
 /// What is calibrated, and where the result goes.
@@ -61,8 +66,9 @@ struct CalibrateOptions : ResultOptions {
   std::string scene;           ///< MCAP for viewers; whatever the verdict
   bool keep_outliers = false;  ///< use samples that do not fit the others
   bool dry_run = false;
-  int folds = 5;   ///< for held-out errors; 0: leave-one-out
-  int starts = 0;  ///< random ones, beside the one of the configuration
+  int folds = 5;                     ///< for held-out errors; 0: leave-one-out
+  int starts = 0;                    ///< random ones, beside the one of the configuration
+  std::vector<std::string> between;  ///< sensors, links or frames: +- of the pose of one in another
   std::string cost = "compressed";
   Manner manner = {};
 };

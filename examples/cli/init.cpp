@@ -1,6 +1,7 @@
 // kinecal init: writes a first configuration from a URDF and a few answers.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -16,12 +17,14 @@
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/patch_urdf.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/text/name_list.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
 #include "kinecal/tools/init/possible_targets.hpp"
 #include "kinecal/tools/init/proposed_columns.hpp"
+#include "kinecal/tools/init/several_answers.hpp"
 #include "output_file.hpp"
 #include "question.hpp"
 #include "report.hpp"
@@ -39,16 +42,33 @@ std::string why_not(const Check& check) {
   return diagnostics.errors.empty() ? "" : diagnostics.errors.front();
 }
 
-std::string ask_link(const Robot& robot, const Question& question) {
-  return ask(question, [&](const std::string& link) {
-    return why_not([&](Diagnostics& d) { check_init_link(robot, question.option, link, d); });
+/// The links of a list with commas; a link whose name has commas is one.
+std::vector<std::string> links_of(const Robot& robot, const std::string& list) {
+  if (robot.has_link(list)) return {list};
+  return names_of_list(list);
+}
+
+/// The first of them; empty of an empty list.
+std::string first_of(const Robot& robot, const std::string& list) {
+  const std::vector<std::string> links = links_of(robot, list);
+  return links.empty() ? "" : links.front();
+}
+
+/// One link, or several with commas.
+std::string ask_links(const Robot& robot, const Question& question) {
+  return ask(question, [&](const std::string& links) {
+    return why_not([&](Diagnostics& d) {
+      for (const std::string& link : links_of(robot, links))
+        check_init_link(robot, question.option, link, d);
+    });
   });
 }
 
 /// Why a word is not a target of this robot; empty if it is.
 std::string check_target(const Robot& robot, const InitOptions& options, const std::string& word) {
   if (const auto target = init_target(word)) {
-    return why_no_target(robot, target->target, options.arm, options.camera);
+    return why_no_target(robot, target->target, first_of(robot, options.arm),
+                         first_of(robot, options.camera));
   }
   std::vector<std::string_view> words;
   for (const InitTargetWord& known : kInitTargets) words.push_back(known.word);
@@ -108,15 +128,19 @@ void answer_targets(const Robot& robot, InitOptions& options, InitAnswers& answe
     answers.with_ground = false;
   }
   // Before further questions, so that no answers are lost.
+  const bool is_one =
+      links_of(robot, options.arm).size() * links_of(robot, options.camera).size() < 2;
   const std::string why = why_no_target(robot, answers.target, options.arm, options.camera);
-  if (!why.empty()) throw InputError(why);
+  if (is_one && !why.empty()) throw InputError(why);
 }
 
 void answer_camera(const Robot& robot, InitOptions& options, InitAnswers& answers) {
   if (answers.camera.empty()) {
-    answers.camera = options.camera =
-        ask_link(robot, {"--camera", "Which link is the camera's optical frame (z ahead, y down)?",
-                         choices(cameras_for(robot, answers.target, answers.arm))});
+    options.camera = ask_links(
+        robot, {"--camera",
+                "Which link is the camera's optical frame (z ahead, y down; several: with commas)?",
+                choices(cameras_for(robot, answers.target, answers.arm))});
+    answers.camera = first_of(robot, options.camera);
   }
   const bool floor = answers.with_ground || answers.target == InitTarget::ground;
   if (options.camera_type.empty() && on_a_terminal() && !floor) {
@@ -129,6 +153,10 @@ void answer_camera(const Robot& robot, InitOptions& options, InitAnswers& answer
     });
   }
   if (!options.camera_type.empty()) answers.camera_type = options.camera_type;
+  if (links_of(robot, options.camera).size() > 1) {  // they have the names of their links
+    if (options.camera_name.empty()) return;
+    throw InputError("--robot-camera-name is of one camera; several have the names of their links");
+  }
   answers.camera_name = options.camera_name = ask_unless_given(
       options.camera_name,
       {"--robot-camera-name", "What do the samples call the camera (sensor_name)?",
@@ -171,7 +199,12 @@ void answer_names(const Robot& robot, InitOptions& options, InitAnswers& answers
     });
   };
   const bool tracker = answers.target == InitTarget::tracker;
-  if (needs_target_frame(answers.target)) {
+  const bool is_one = links_of(robot, options.arm).size() < 2;
+  if (!is_one && !options.target_frame.empty()) {
+    throw InputError("--target-frame is of one arm; those of several are LINK_" +
+                     proposed.target_frame);
+  }
+  if (is_one && needs_target_frame(answers.target)) {
     options.target_frame =
         frame(options.target_frame,
               {"--target-frame",
@@ -205,10 +238,11 @@ void answer_names(const Robot& robot, InitOptions& options, InitAnswers& answers
 /// Checks the options before any question, so that no answers are lost.
 void check_given(const Robot& robot, const InitOptions& options) {
   Diagnostics diagnostics;
-  for (const auto& [option, link] :
-       {std::pair("--base", options.base), std::pair("--arm", options.arm),
-        std::pair("--camera", options.camera)}) {
-    if (!link.empty()) check_init_link(robot, option, link, diagnostics);
+  if (!options.base.empty()) check_init_link(robot, "--base", options.base, diagnostics);
+  for (const auto& [option, links] :
+       {std::pair("--arm", options.arm), std::pair("--camera", options.camera)}) {
+    for (const std::string& link : links_of(robot, links))
+      check_init_link(robot, option, link, diagnostics);
   }
   for (const std::string& frame : split(options.target_frame)) {
     check_init_frame(robot, "--target-frame", frame, diagnostics);
@@ -301,24 +335,8 @@ std::vector<Sample> read_from(const Robot& robot, const InitOptions& options) {
   return samples;
 }
 
-/// The answers that samples give, without questions; prints them.
-InitAnswers answer_from_samples(const Robot& robot, const InitOptions& options) {
-  check_given(robot, options);
-  const std::vector<Sample> samples = read_from(robot, options);
-  InitAnswers given;
-  given.base = options.base;
-  given.arm = options.arm;
-  given.camera = options.camera;
-  given.tracker_frame = options.tracker_frame;
-  set_target_frames(options.target_frame, given);
-  given.length = options.length;
-  const std::optional<InitTarget> target = given_target(robot, options);
-  if (target) given.target = *target;
-  const InitAnswers found = answers_from_samples(robot, samples, std::move(given));
-  if (target && *target != found.target) {
-    throw InputError(fmt::format("--target: the samples of --from are those of {}, not of {}",
-                                 to_string(found.target), options.targets.front()));
-  }
+/// What samples say of a camera and what it sees, or of a tracker.
+std::string answers_text(const InitOptions& options, const InitAnswers& found) {
   std::string text = fmt::format("from the samples: target {}", to_string(found.target));
   if (found.with_ground) text += ",ground";
   if (needs_arm(found.target)) text += fmt::format("; arm {}", found.arm);
@@ -330,28 +348,58 @@ InitAnswers answer_from_samples(const Robot& robot, const InitOptions& options) 
   if (options.base.empty() && !found.base.empty()) {
     text += fmt::format("; base {}: joints before it are not in the samples", found.base);
   }
-  say("{}\n", text);
-  return found;
+  return text;
+}
+
+/// The answers that samples give, without questions; prints them.
+std::vector<InitAnswers> answer_from_samples(const Robot& robot, const InitOptions& options) {
+  check_given(robot, options);
+  const std::vector<Sample> samples = read_from(robot, options);
+  InitAnswers given;
+  given.base = options.base;
+  given.arm = options.arm;
+  given.camera = options.camera;
+  given.tracker_frame = options.tracker_frame;
+  set_target_frames(options.target_frame, given);
+  given.length = options.length;
+  const std::optional<InitTarget> target = given_target(robot, options);
+  if (target) given.target = *target;
+  std::vector<InitAnswers> all = all_answers_from_samples(robot, samples, given);
+  for (const InitAnswers& found : all) {
+    if (target && *target != found.target) {
+      throw InputError(fmt::format("--target: the samples of --from are those of {}, not of {}",
+                                   to_string(found.target), options.targets.front()));
+    }
+    say("{}\n", answers_text(options, found));
+  }
+  return all;
 }
 
 /// @param options  receives the answers, so that they can be given as options
-InitAnswers answer(const Robot& robot, InitOptions& options) {
+std::vector<InitAnswers> answer(const Robot& robot, InitOptions& options) {
   check_given(robot, options);
   InitAnswers answers;
   answers.base = options.base;
-  answers.arm = options.arm;
-  answers.camera = options.camera;
+  answers.arm = first_of(robot, options.arm);
+  answers.camera = first_of(robot, options.camera);
   answers.length = options.length;
   answer_targets(robot, options, answers);
   warn_of_idle(options, answers.target, to_string(answers.target, answers.board));
   if (needs_arm(answers.target) && answers.arm.empty()) {
-    answers.arm = options.arm =
-        ask_link(robot, {"--arm", "Which link is at the end of the arm, with the target?",
-                         choices(propose_arms(robot))});
+    options.arm = ask_links(
+        robot, {"--arm",
+                "Which link is at the end of the arm, with the target (several arms: with commas)?",
+                choices(propose_arms(robot))});
+    answers.arm = first_of(robot, options.arm);
   }
   if (needs_camera(answers.target)) answer_camera(robot, options, answers);
   answer_names(robot, options, answers);
-  return answers;
+  return answers_of_all(
+      robot, answers,
+      needs_arm(answers.target) || answers.target == InitTarget::robot
+          ? links_of(robot, options.arm)
+          : std::vector<std::string>(),
+      needs_camera(answers.target) ? links_of(robot, options.camera) : std::vector<std::string>());
 }
 
 /// The call with all that was given and answered.
@@ -377,8 +425,8 @@ std::string call_of(const InitOptions& options) {
 
 /// The answers; after questions, an error comes with the call that gives them.
 struct Configured {
-  InitAnswers answers;
-  std::string text;  ///< of the configuration
+  std::vector<InitAnswers> answers;  ///< of each camera and arm
+  std::string text;                  ///< of the configuration
 };
 Configured configure(const Robot& robot, InitOptions options) {
   const InitOptions given = options;
@@ -407,13 +455,14 @@ bool is_of_others(const std::string& path) {
 }
 
 /// Writes the capture.yaml that goes with a configuration; keeps one that init has not written.
-void write_capture(const Robot& robot, const InitAnswers& answers, const InitOptions& options) {
+void write_capture(const Robot& robot, const std::vector<InitAnswers>& answers,
+                   const InitOptions& options) {
   const std::string text = initial_capture(robot, answers), file = capture_file(options);
   if (text.empty()) return;
   const bool is_asked_for = !options.capture.empty() && options.force;
   if (!is_asked_for && (is_of_others(file) || (std::filesystem::exists(file) && !options.force))) {
     say("note: {} is there and is kept; with this configuration, it needs\n  {}\n", file,
-        capture_names(robot, answers));
+        capture_names(robot, answers.front()));
     return;
   }
   write_output(file, text);
@@ -471,6 +520,7 @@ int init(const InitOptions& options) {
   const Robot robot = parse_urdf(urdf_text, options.urdf);
   const Configured made = configure(robot, options);
   check();  // the file may have appeared meanwhile
+  const InitAnswers& answers = made.answers.front();
   write_output(options.output, made.text);
   if (made.text.find("sigma: ") != std::string::npos) {
     say("note: each sigma in {} is a guess of a residual, errors of the robot included; replace "
@@ -478,9 +528,10 @@ int init(const InitOptions& options) {
         options.output);
   }
   say("wrote {}\n", options.output);
+  if (made.answers.size() > 1) say("  {}\n", pairs_text(made.answers));
   if (options.from.empty()) {
     write_capture(robot, made.answers, options);
-    note_fault_of_target(to_string(made.answers.target, made.answers.board));
+    note_fault_of_target(to_string(answers.target, answers.board));
   }
   say("{}", joint_zeros_text(robot, urdf_text, made.text, options));
   std::vector<std::string> named = options.from;
@@ -488,15 +539,23 @@ int init(const InitOptions& options) {
   const bool streams = std::any_of(named.begin(), named.end(), detail::is_stream);
   if (streams || is_standard_output(options.output)) return kDone;  // no command could be pasted
   InputOptions inputs{.urdf = options.urdf, .config = options.output, .samples = options.from};
-  const InitAnswers& answers = made.answers;
   const bool has_photographs = answers.camera_type == "camera2d" && is_board(answers.target);
   if (options.from.empty() && has_photographs) {
     inputs.samples = {"samples.yaml"};
-    const ShellCommand detect =
+    std::vector<std::string> cameras;
+    for (const InitAnswers& one : made.answers) {
+      if (std::find(cameras.begin(), cameras.end(), one.camera) == cameras.end())
+        cameras.push_back(one.camera);
+    }
+    ShellCommand detect =
         ShellCommand{"kinecal", "detect", shell_file(capture_file(options)), "--images", "images"}
-            .add({"--poses", "poses.csv", "--camera", "camera.yaml"})
-            .add_option("--frame", {answers.camera})
-            .add({"-o", "samples.yaml"});
+            .add({"--poses", "poses.csv"});
+    if (cameras.size() == 1) detect.add({"--camera", "camera.yaml"});
+    for (const std::string& camera : cameras) {
+      if (cameras.size() > 1) inputs.cameras.push_back(camera + "=" + camera + ".yaml");
+    }
+    detect.add_option("--frame", {fmt::format("{}", fmt::join(cameras, ","))})
+        .add({"-o", "samples.yaml"});
     say("next: {} && {}\n", detect.str(), calibrate_command(inputs).str());
   } else if (options.from.empty()) {
     say("next: {}\n", ShellCommand{"kinecal", "check"}.add(input_options(inputs)).str());

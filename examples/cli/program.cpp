@@ -156,8 +156,17 @@ void add_robot_files(CLI::App& command, RobotFileOptions& files) {
   command
       .add_option("--kinematics", files.kinematics,
                   "also write the origins of the joints, with their zeros, as YAML: UR's "
-                  "calibration file, or one with the names of the joints")
+                  "calibration file, Franka's, or one with the names of the joints; of several "
+                  "arms, for each: PREFIX=FILE, with what the names of its joints begin with")
+      ->allow_extra_args(false)
       ->type_name("FILE");
+  CLI::Option* zeros =
+      command
+          .add_option("--zeros", files.zeros,
+                      "also write the zeros of the joints as a list, YAML: joint: number, to be "
+                      "added to the reading; radians and metres")
+          ->type_name("FILE");
+  command.add_flag("--degrees", files.degrees, "--zeros in degrees and millimetres")->needs(zeros);
   CLI::Option* homing =
       command
           .add_option("--homing", files.homing,
@@ -275,6 +284,10 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
                   "parts into which samples are divided for held-out errors; 0: leave-one-out")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
+  add_names(
+      command, "--between", options.between,
+      "sensors, links or frames: also report how well the pose of each in each other is known: "
+      "left,right,top");
   command
       .add_option(
           "--starts", options.starts,
@@ -353,7 +366,8 @@ void add_init(CLI::App& command, InitOptions& options) {
           .add_option(
               "--corners", options.corners,
               "a table of the corners seen (image, id, u, v), instead of photographs; with --poses "
-              "or --cameras (of several: a column camera)")
+              "(of several cameras: left=FILE,right=FILE) or --cameras (of several: a column "
+              "camera)")
           ->type_name("FILE");
   corners->needs(command
                      .add_option("--target-points", options.target_points,
@@ -404,7 +418,11 @@ void add_init(CLI::App& command, InitOptions& options) {
       .add_option("--arm", options.arm,
                   "link at the end of the arm; with target robot: frees the joints up to it")
       ->type_name("LINK");
-  command.add_option("--camera", options.camera, "the camera's optical frame")->type_name("LINK");
+  command
+      .add_option("--camera", options.camera,
+                  "the camera's optical frame; with --poses: names of cameras, left,right,top; "
+                  "default: camera")
+      ->type_name("LINK");
   command
       .add_option("--camera-type", options.camera_type,
                   "camera3d (points in metres), the default, or camera2d (pixels)")

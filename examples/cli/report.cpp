@@ -149,7 +149,7 @@ void check_reports(const CalibrateOptions& options) {
   inputs.insert(inputs.end(), {options.urdf, options.config});
   for (const std::string& camera : options.cameras) inputs.push_back(camera_file(camera));
   const RobotFileOptions& robot = options.robot_files;
-  inputs.insert(inputs.end(), {robot.kinematics, robot.homing, robot.xacro});
+  for (const std::string& file : robot.files()) inputs.push_back(file);
   if (!options.output.empty()) {  // a folder of results
     for (const char* result : {"calibrated.urdf", "calibration.yaml", kConfigCopy, kOriginalUrdf}) {
       inputs.push_back((std::filesystem::path(options.output) / result).string());

@@ -38,12 +38,25 @@ int newest_backup(const fs::path& file) {
   return n;
 }
 
+/// A file of --kinematics, and what the joints of its arm begin with.
+struct KinematicsOption {
+  std::string prefix, file;
+};
+
+/// FILE, or PREFIX=FILE of one of several arms.
+KinematicsOption kinematics_option(const std::string& option) {
+  const std::size_t equals = option.find('=');
+  if (equals == std::string::npos || fs::exists(option)) return {"", option};
+  return {option.substr(0, equals), option.substr(equals + 1)};
+}
+
 /// Checks that a URDF was made with the file that is to be replaced: else a factory's calibration would be replaced by the
 /// nominal geometry.  A file that kinecal wrote may also hold a calibration of the same URDF.
 /// @throws InputError  naming the joints that differ
-void check_kinematics(const std::string& name, const fs::path& file, const Robot& robot,
+void check_kinematics(const KinematicsOption& of, const fs::path& file, const Robot& robot,
                       const std::string& existing) {
-  std::string difference = kinematics_difference(robot, existing, name);
+  const std::string& name = of.file;
+  std::string difference = kinematics_difference(robot, existing, name, of.prefix);
   if (difference.empty()) return;
   if (existing.starts_with(kKinematicsMark)) {
     std::string before;  // the newest backup that kinecal has not written
@@ -52,7 +65,7 @@ void check_kinematics(const std::string& name, const fs::path& file, const Robot
       if (before.starts_with(kKinematicsMark)) before.clear();
     }
     if (before.empty()) return;
-    difference = kinematics_difference(robot, before, name);
+    difference = kinematics_difference(robot, before, name, of.prefix);
     if (difference.empty()) return;
   }
   throw InputError(
@@ -64,12 +77,13 @@ void check_kinematics(const std::string& name, const fs::path& file, const Robot
                   name, difference));
 }
 
-void add_kinematics(const std::string& name, const Robot& robot,
+void add_kinematics(const KinematicsOption& of, const Robot& robot,
                     const std::vector<JointPatch>& patches, RobotFiles& files) {
+  const std::string& name = of.file;
   const fs::path file = file_behind(name);
   const std::string existing = fs::exists(file) ? detail::read_text_file(name) : "";
-  const std::string text = kinematics_yaml(robot, patches, existing, name);
-  if (!existing.empty()) check_kinematics(name, file, robot, existing);
+  const std::string text = kinematics_yaml(robot, patches, existing, name, of.prefix);
+  if (!existing.empty()) check_kinematics(of, file, robot, existing);
   FileSet set{folder_of(file.string()), {{file.filename().string(), text}}};
   if (!existing.empty() && existing != text) {
     set.files.insert(set.files.begin(), {backup_name(file, newest_backup(file) + 1), existing});
@@ -78,6 +92,29 @@ void add_kinematics(const std::string& name, const Robot& robot,
   }
   files.sets.push_back(std::move(set));
   files.said.note({name, 0}, "has the origins of joints; their zeros are in them");
+}
+
+/// The zeros of joints as a list.  A list that kinecal has not written may be in the positions that were recorded already.
+void add_zeros(const RobotFileOptions& of, const Robot& robot,
+               const std::vector<JointPatch>& patches, RobotFiles& files) {
+  const fs::path file = file_behind(of.zeros);
+  const std::string existing = fs::exists(file) ? detail::read_text_file(of.zeros) : "";
+  if (!existing.empty() && !existing.starts_with(kZerosMark)) {
+    throw InputError(
+        of.zeros +
+        ": exists, and kinecal has not written it: whether its zeros are in the recorded positions "
+        "is not known; give the name of a new file");
+  }
+  FileSet set{folder_of(file.string()),
+              {{file.filename().string(), zeros_yaml(robot, patches, of.degrees)}}};
+  if (!existing.empty() && existing != set.files.front().content) {
+    set.files.insert(set.files.begin(), {backup_name(file, newest_backup(file) + 1), existing});
+    files.said.note({of.zeros, 0},
+                    fmt::format("the file before is kept as {}", set.files.front().name));
+  }
+  files.sets.push_back(std::move(set));
+  files.said.note({of.zeros, 0},
+                  "has the zeros, which the URDF has, too: let one of them add to the readings");
 }
 
 /// Homing offsets are added to: a copy of the file before says whether they hold these zeros already.
@@ -140,6 +177,12 @@ bool names_same_file(const std::string& one, const std::string& other) {
 
 }  // namespace
 
+std::vector<std::string> RobotFileOptions::files() const {
+  std::vector<std::string> all = {homing, xacro, zeros};
+  for (const std::string& option : kinematics) all.push_back(kinematics_option(option).file);
+  return all;
+}
+
 void check_robot_files(const ResultOptions& options, const Robot& robot, const InputTexts& texts) {
   const RobotFileOptions& of = options.robot_files;
   std::vector<std::string> inputs = options.samples;
@@ -158,7 +201,7 @@ void check_robot_files(const ResultOptions& options, const Robot& robot, const I
     }
     const OutputFolder can_be_written(folder);
   };
-  for (const std::string& name : {of.kinematics, of.homing, of.xacro}) check(name);
+  for (const std::string& name : of.files()) check(name);
   if (!of.xacro.empty()) {
     Diagnostics said_when_written;
     const std::vector<XacroFile> all = read_xacro_files(of.xacro, said_when_written);
@@ -176,9 +219,12 @@ RobotFiles robot_files(const ResultOptions& options, const Robot& robot, const I
                        const ParameterTable& table, const std::string& calibrated) {
   const RobotFileOptions& of = options.robot_files;
   RobotFiles files;
-  if (!of.kinematics.empty()) {
+  for (const std::string& option : of.kinematics) {
     const std::set<std::string> in_servos = zeros_in_servos(of, robot);
-    add_kinematics(of.kinematics, robot, joint_patches(robot, table, in_servos), files);
+    add_kinematics(kinematics_option(option), robot, joint_patches(robot, table, in_servos), files);
+  }
+  if (!of.zeros.empty()) {
+    add_zeros(of, robot, joint_patches(robot, table, zeros_in_servos(of, robot)), files);
   }
   if (!of.homing.empty()) add_homing(of, robot, joint_patches(robot, table), files);
   if (!of.xacro.empty()) add_xacro(of.xacro, texts, calibrated, files);

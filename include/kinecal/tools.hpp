@@ -30,6 +30,7 @@
 #include "kinecal/tools/init/possible_targets.hpp"
 #include "kinecal/tools/init/proposed_columns.hpp"
 #include "kinecal/tools/init/robot_parts.hpp"
+#include "kinecal/tools/init/several_answers.hpp"
 #include "kinecal/tools/install/install.hpp"
 #include "kinecal/tools/install/launch_names.hpp"
 #include "kinecal/tools/install/result_folder.hpp"

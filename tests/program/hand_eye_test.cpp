@@ -2,9 +2,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include <filesystem>
+#include <map>
 #include <random>
+#include <sstream>
 
 #include "kinecal/files/poses/pose_numbers.hpp"
 #include "kinecal/geometry/rpy.hpp"
@@ -124,6 +127,122 @@ TEST_F(HandEyeProgram, RefusesWhatIsMissingAndWritesNothing) {
   for (const char* file : {"hand_eye.urdf", "columns.yaml", "calibrate.yaml", "capture.yaml"}) {
     EXPECT_FALSE(exists(file)) << file;
   }
+}
+
+// ---- several cameras
+
+/// Three cameras around a KUKA that holds a board: each sees a third of the poses, and one of them alone.
+class CellProgram : public test::ProgramTest {
+ protected:
+  CellProgram() {
+    std::string poses = "image,X,Y,Z,A,B,C\n", target = "id,x,y,z\n";
+    std::map<std::string, std::string> corners;
+    for (const auto& [name, pose] : kTruth) {
+      corners[name] = "image,id,u,v\n";
+      write(name + ".yaml", kCamera);
+    }
+    const Pose<double> flange_T_board{rotation_from_rpy({0.2, -0.1, 0.5}), {0.02, -0.05, 0.12}};
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> side(-0.15, 0.15), tilt(-0.45, 0.45);
+    std::normal_distribution<double> noise(0.0, 0.1);  // pixels
+    std::vector<Vector3<double>> points;
+    for (int i = 0; i < 24; ++i) {
+      points.push_back({0.03 * (i % 6), 0.03 * (i / 6), 0.0});
+      target += fmt::format("{},{},{},0\n", i, points.back().x(), points.back().y());
+    }
+    for (int n = 0; n < 36; ++n) {
+      const auto& [name, base_T_camera] = kTruth[static_cast<std::size_t>(n % 3)];
+      const Pose<double> camera_T_board{
+          rotation_from_rpy({tilt(random), tilt(random), 3.0 * tilt(random)}),
+          {side(random) - 0.07, side(random) - 0.05, 0.9 + side(random)}};
+      const Pose<double> base_T_flange = base_T_camera * camera_T_board * flange_T_board.inverse();
+      const Vector3<double> t = 1e3 * base_T_flange.translation,
+                            rpy = rpy_from_rotation(base_T_flange.rotation) / kDegree;
+      poses +=
+          fmt::format("{},{},{},{},{},{},{}\n", n, t.x(), t.y(), t.z(), rpy.z(), rpy.y(), rpy.x());
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vector3<double> p = camera_T_board * points[i];
+        corners[name] +=
+            fmt::format("{},{},{},{}\n", n, i, 640 + 1000 * p.x() / p.z() + noise(random),
+                        480 + 1000 * p.y() / p.z() + noise(random));
+      }
+    }
+    write("poses.csv", poses);
+    write("target.csv", target);
+    for (const auto& [name, text] : corners) write(name + ".csv", text);
+  }
+  test::Outcome init(const std::string& cameras, const std::string& corners) {
+    return kinecal(
+        "init --poses poses.csv --target charuco --force --target-points target.csv --camera " +
+        cameras + " --corners " + corners);
+  }
+
+  const std::vector<std::pair<std::string, Pose<double>>> kTruth = {
+      {"left", {rotation_from_rpy({-1.7, 0.1, -0.4}), {-0.3, -1.2, 0.8}}},
+      {"right", {rotation_from_rpy({-1.9, -0.1, 2.6}), {0.5, 1.3, 0.9}}},
+      {"top", {rotation_from_rpy({3.1, 0.1, 0.7}), {0.6, 0.0, 1.9}}}};
+};
+
+TEST_F(CellProgram, CalibratesAllCamerasAndTheBoardInOneSolve) {
+  const test::Outcome made = init("left,right,top", "left=left.csv,right=right.csv,top=top.csv");
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("--camera left=left.yaml"));
+  ASSERT_EQ(kinecal("convert poses.csv samples.yaml --columns columns.yaml").code, 0);
+  const test::Outcome done = kinecal(
+      "calibrate --urdf hand_eye.urdf --config calibrate.yaml --samples samples.yaml --camera "
+      "left=left.yaml --camera right=right.yaml --camera top=top.yaml --between left,right,top "
+      "--report report.json --report report.html --output calibrated");
+  ASSERT_EQ(done.code, 0) << done.out << done.err;
+  EXPECT_THAT(done.out,
+              AllOf(HasSubstr("verdict: good"), HasSubstr("Pose of 'right' in 'left': +- "),
+                    HasSubstr("Pose of 'top' in 'right': +- ")));
+  for (const auto& [name, truth] : kTruth) {
+    std::istringstream in(read(("calibrated/" + name + "_joint.txt").c_str()));
+    std::vector<double> numbers;
+    for (double number = 0.0; in >> number;) numbers.push_back(number);
+    const NumberedPose found = pose_from_numbers(*pose_form("matrix"), numbers);
+    ASSERT_EQ(found.wrong, "") << name;
+    EXPECT_LE((found.pose.translation - truth.translation).norm(), 2e-3) << name;
+    EXPECT_LE((found.pose.rotation - truth.rotation).norm(), 3e-3) << name;
+    EXPECT_THAT(read("report.html"), HasSubstr("\"cameras\":")) << "in the 3-D view";
+    EXPECT_THAT(read("report.html"), HasSubstr("\"name\":\"" + name + "\",\"link\":")) << name;
+  }
+  const YAML::Node report = YAML::Load(read("report.json"));
+  ASSERT_EQ(report["between"].size(), 3u);
+  EXPECT_EQ(report["between"][0]["frame"].as<std::string>(), "right");
+  EXPECT_EQ(report["between"][0]["in"].as<std::string>(), "left");
+  EXPECT_GT(report["between"][0]["position"].as<double>(), 1e-5);
+  EXPECT_LT(report["between"][0]["position"].as<double>(), 2e-3);
+  const test::Outcome unknown = kinecal(
+      "calibrate --urdf hand_eye.urdf --config calibrate.yaml --samples samples.yaml --camera "
+      "left=left.yaml --camera right=right.yaml --camera top=top.yaml --between left,rihgt "
+      "--output "
+      "other");
+  EXPECT_EQ(unknown.code, 1);
+  EXPECT_THAT(unknown.err,
+              AllOf(HasSubstr("--between: 'rihgt'"), HasSubstr("did you mean 'right'")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "other"));
+}
+
+TEST_F(CellProgram, NamesWhatIsWrongWithCamerasAndTablesInASentence) {
+  const std::string all = "left=left.csv,right=right.csv,top=top.csv";
+  const auto refusal = [&](const std::string& cameras, const std::string& corners) {
+    const test::Outcome made = init(cameras, corners);
+    EXPECT_EQ(made.code, 1) << made.out;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "calibrate.yaml"));
+    return made.err;
+  };
+  EXPECT_THAT(refusal("left,left", "left=left.csv"), HasSubstr("--camera: 'left' occurs twice"));
+  EXPECT_THAT(refusal("left,arm", all), HasSubstr("'arm' cannot be the name of a camera"));
+  EXPECT_THAT(refusal("left,right,top", "left=left.csv,right=right.csv"),
+              HasSubstr("--corners: camera 'top' sees nothing: add top=FILE"));
+  EXPECT_THAT(refusal("left,right", all), HasSubstr("--corners: no camera 'top'"));
+  EXPECT_THAT(refusal("left,right", "left.csv"), HasSubstr("'left.csv' is no NAME=FILE"));
+  write("none.csv", "image,id,u,v\n");
+  EXPECT_THAT(refusal("left,right", "left=left.csv,right=none.csv"), HasSubstr("none.csv"));
+  write("others.csv", "image,id,u,v\nx,0,1,2\nx,1,1,3\n");
+  EXPECT_THAT(refusal("left,right", "left=left.csv,right=others.csv"),
+              AllOf(HasSubstr("others.csv: camera 'right' sees nothing"), HasSubstr("(x, ...)")));
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/config/config_free.ipp"
 #include "kinecal/config/few_samples.ipp"
+#include "kinecal/config/frame_gaps.hpp"
 #include "kinecal/config/loss_names.hpp"
 #include "kinecal/config/missing_sensors.hpp"
 #include "kinecal/config/parameters_from_config.hpp"
@@ -649,6 +650,15 @@ void prepare_search(CalibrationStep& step, const Config& config, const StepConfi
   if (few->num_residuals() > 0) step.excerpt = std::move(few);
 }
 
+/// The frames of which nothing gives a pose.
+[[nodiscard]] std::vector<std::string> names_without_guess(std::span<const UnknownFrame> frames) {
+  std::vector<std::string> names;
+  for (const UnknownFrame& frame : frames) {
+    if (!frame.has_guess) names.push_back(frame.name);
+  }
+  return names;
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -725,6 +735,9 @@ Calibration assemble(const Config& given, const Robot& of_urdf, std::span<const 
                                  detail::initial_assignments(step, calibration.table)});
     if (!samples.empty()) {
       detail::prepare_search(calibration.steps.back(), config, step, robot, samples);
+      check_frame_gaps(robot, config.base_link, step,
+                       detail::names_without_guess(calibration.steps.back().unknown_frames),
+                       samples, diagnostics);
     }
   }
   return calibration;

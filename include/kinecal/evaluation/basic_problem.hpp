@@ -68,8 +68,8 @@ class BasicProblem final : public AnyProblem {
   /// The samples, by layout.
   [[nodiscard]] const std::vector<detail::Batches<S>>& batches() const { return batches_; }
 
-  [[nodiscard]] std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
-                                                        int threads = 0) const override;
+  [[nodiscard]] std::unique_ptr<AnyEvaluator> evaluator(
+      const FreeSet& free, int threads = 0, std::span<const int> terms = {}) const override;
   [[nodiscard]] std::unique_ptr<AnyProblem> without_samples() const override;
 
  private:

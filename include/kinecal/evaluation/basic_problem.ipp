@@ -65,9 +65,13 @@ std::unique_ptr<AnyProblem> BasicProblem<S>::without_samples() const {
 }
 
 template <class S>
-std::unique_ptr<AnyEvaluator> BasicProblem<S>::evaluator(const FreeSet& free, int threads) const {
-  if (!sample_poses().empty()) return std::make_unique<SamplePosesEvaluator<S>>(*this, free);
-  return std::make_unique<Evaluator<S>>(*this, free, threads);
+std::unique_ptr<AnyEvaluator> BasicProblem<S>::evaluator(const FreeSet& free, int threads,
+                                                         std::span<const int> terms) const {
+  if (sample_poses().empty()) return std::make_unique<Evaluator<S>>(*this, free, threads, terms);
+  if (!terms.empty()) {
+    throw std::invalid_argument("evaluator: samples with poses of their own need all error blocks");
+  }
+  return std::make_unique<SamplePosesEvaluator<S>>(*this, free);
 }
 
 }  // namespace kinecal

@@ -6,7 +6,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
+#include <span>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/evaluation/parallel.hpp"
@@ -25,15 +27,17 @@ class Evaluator final : public AnyEvaluator {
   /// @param problem  must outlive the evaluator; do not add samples meanwhile
   /// @param free     the columns of the Jacobian
   /// @param threads  number of threads that share normal_equations(); zero: one per core
+  /// @param terms    indices of the error blocks that count; empty: all
   /// @throws std::invalid_argument  if a free parameter does not belong to the problem
-  Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int threads = 0);
+  Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int threads = 0,
+            std::span<const int> terms = {});
   /// The same for other numbers of the same samples.
   /// @param batches  must outlive the evaluator
   Evaluator(const BasicProblem<S>& problem, const std::vector<detail::Batches<S>>& batches,
-            const FreeSet& free, int threads);
+            const FreeSet& free, int threads, std::span<const int> terms = {});
 
-  Evaluator(const BasicProblem<S>&&, const FreeSet&,
-            int = 0) = delete;  ///< the evaluator would outlive it
+  Evaluator(const BasicProblem<S>&&, const FreeSet&, int = 0,
+            std::span<const int> = {}) = delete;  ///< the evaluator would outlive it
 
   /// The problem that it evaluates.
   [[nodiscard]] const BasicProblem<S>& problem() const override { return problem_; }
@@ -68,6 +72,7 @@ class Evaluator final : public AnyEvaluator {
   /// State of a term that all batches share.
   struct TermState {
     OwnParameters own;                                  ///< of the block
+    bool counts = true;                                 ///< else it is left out
     std::vector<std::vector<detail::FeatureRun>> runs;  ///< of the features of each layout
   };
 
@@ -116,6 +121,13 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
     const detail::Batches<S>& batches = batches_[l];
     const detail::SampleLayout& layout = batches.layout();
     const std::size_t size = batches.size();
+    const auto counts = [&](const detail::TermLayout& place) {
+      return terms_[static_cast<std::size_t>(place.term)].counts;
+    };
+    if (std::none_of(layout.terms.begin(), layout.terms.end(), counts)) {
+      before += size;
+      continue;
+    }
     const auto part = detail::prefetched_at_once(size, batches.numbers(0).size_bytes(),
                                                  layout.sensors.size() + layout.terms.size());
     for (std::size_t n = std::max(first, before); n < std::min(end, before + size); ++n) {
@@ -129,6 +141,7 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
         detail::prefetch(next, part);
         const Term& term = problem_.term(place.term);
         const TermState& state = terms_[static_cast<std::size_t>(place.term)];
+        if (!state.counts) continue;
         detail::TermViews<S> views{&term, {}, &state.own, state.runs[l]};
         views.inverse_sigmas = batches.of_term(b, place.inverse_sigmas);
         views.conditions = batches.of_term(b, place.conditions);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -12,13 +13,14 @@
 namespace kinecal {
 
 template <class S>
-Evaluator<S>::Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int threads)
-    : Evaluator(problem, problem.batches(), free, threads) {}
+Evaluator<S>::Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int threads,
+                        std::span<const int> terms)
+    : Evaluator(problem, problem.batches(), free, threads, terms) {}
 
 template <class S>
 Evaluator<S>::Evaluator(const BasicProblem<S>& problem,
                         const std::vector<detail::Batches<S>>& batches, const FreeSet& free,
-                        int threads)
+                        int threads, std::span<const int> only)
     : problem_(problem), batches_(batches), free_(free) {
   problem.check(free);
   std::vector<bool> placed(problem.sensors().size(), false);
@@ -32,7 +34,8 @@ Evaluator<S>::Evaluator(const BasicProblem<S>& problem,
     sensors_.emplace_back(problem.sensors()[s], free, placed[s]);
   }
   for (int t = 0; t < problem.num_terms(); ++t) {
-    terms_.push_back({OwnParameters(problem.term(t).parameters, free), {}});
+    const bool counts = only.empty() || std::find(only.begin(), only.end(), t) != only.end();
+    terms_.push_back({OwnParameters(problem.term(t).parameters, free), counts, {}});
     terms_.back().runs.resize(batches.size());
   }
   for (std::size_t l = 0; l < batches.size(); ++l) {

@@ -157,14 +157,16 @@ class AnyProblem {
   ///                                to another table
   void check(const FreeSet& free) const;
   /// Table indices of the parameters that affect some residual of the samples; ascending.
-  [[nodiscard]] std::vector<int> touched_parameters() const;
+  /// @param term  of this error block only; -1: of any
+  [[nodiscard]] std::vector<int> touched_parameters(int term = -1) const;
 
   /// An evaluator of the problem.  The problem must outlive it; do not add samples meanwhile.
   /// @param free     the Jacobian's columns
   /// @param threads  number of threads that share normal_equations(); zero: one per core
-  /// @throws std::invalid_argument  as check()
-  [[nodiscard]] virtual std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
-                                                                int threads = 0) const = 0;
+  /// @param terms    indices of the error blocks that count; empty: all
+  /// @throws std::invalid_argument  as check(); or if terms are given, and samples have poses of their own
+  [[nodiscard]] virtual std::unique_ptr<AnyEvaluator> evaluator(
+      const FreeSet& free, int threads = 0, std::span<const int> terms = {}) const = 0;
 
  protected:
   /// Movable by derived classes.

@@ -630,12 +630,13 @@ inline void add_touched(const MountedSensor& sensor, const std::vector<std::size
 
 }  // namespace detail
 
-KINECAL_INLINE std::vector<int> AnyProblem::touched_parameters() const {
+KINECAL_INLINE std::vector<int> AnyProblem::touched_parameters(int term) const {
   std::set<int> touched;
   for (const auto& [layout, use] : layouts_) {
     if (use.samples == 0) continue;  // they were excluded
     for (const detail::TermLayout& place : layout.terms) {
-      const Term& used = term(place.term);
+      if (term >= 0 && place.term != term) continue;
+      const Term& used = this->term(place.term);
       touched.insert(used.parameters.begin(), used.parameters.end());
       for (const int s : used.sensors) {
         detail::add_touched(sensor(s), layout.sensors[static_cast<std::size_t>(s)]->chain, touched);

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 #include "kinecal/config/assemble.hpp"
@@ -25,6 +26,7 @@
 #include "kinecal/tools/identify/open_config.hpp"
 #include "kinecal/trust/judge_files.hpp"
 #include "kinecal/trust/systematic/speed_limit.hpp"
+#include "kinecal/trust/uncertainty/compared_frames.hpp"
 
 namespace kinecal {
 
@@ -135,7 +137,16 @@ void begin_at(std::vector<double> values, Calibration& calibration) {
                              .exclude = {},
                              .doubts = prepared.diagnostics.doubts,
                              .refutable = prepared.diagnostics.refutable,
-                             .progress = options.progress};
+                             .progress = options.progress,
+                             .between = options.between};
+  for (const std::string& name : options.between) {
+    if (prepared.calibration.steps.empty()) break;
+    try {
+      (void)frame_named(*prepared.calibration.steps.back().problem, prepared.samples, name);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(std::string("--between: ") + error.what());
+    }
+  }
   for (const int number : options.exclude) {
     if (number < 1 || number > std::ssize(prepared.samples)) {
       throw InputError(fmt::format("--exclude: no sample {}; there are samples 1 to {}", number,

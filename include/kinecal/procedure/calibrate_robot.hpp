@@ -64,9 +64,11 @@ struct CalibrationOptions {
   std::vector<std::string> hold = {};  ///< parameters, frames or candidates that keep their values
   std::vector<std::string> mesh_paths = {};  ///< where the URDF's packages may be, for its surface
   Search search = Search::if_open;
-  bool geometry_only = false;          ///< a search frees no joint models, which a URDF cannot hold
-  int draw = 3000;                     ///< of calibrate_log(): samples on which a log is judged
-  std::vector<Suspect> suspects = {};  ///< what may be wrong beside what kinecal suspects
+  bool geometry_only = false;  ///< a search frees no joint models, which a URDF cannot hold
+  std::vector<std::string> between =
+      {};           ///< sensors, links or frames: the report has +- of the pose of one in another
+  int draw = 3000;  ///< of calibrate_log(): samples on which a log is judged
+  std::vector<Suspect> suspects = {};          ///< what may be wrong beside what kinecal suspects
   OffsetStyle offsets = OffsetStyle::as_read;  ///< where the URDF will hold zeros
   std::set<std::string> in_servos = {};        ///< joints whose zeros the URDF does not get
   std::optional<Reader> reader = {};  ///< of the files, whose errors are judged; nullopt: urdf

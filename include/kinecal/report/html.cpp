@@ -424,6 +424,14 @@ namespace {
                            : "<strong>" + reading(data.pose->position, "m") + "</strong>",
         data.pose->rotation < kKnown ? ", " + reading(data.pose->rotation, "rad") : "");
   }
+  for (const PoseUncertainty& pose : data.between) {
+    html += pose.determined
+                ? fmt::format("<p><code>{}</code> in <code>{}</code> is known to {}, {}</p>",
+                              html_name(pose.frame), html_name(pose.in),
+                              reading(pose.position, "m"), reading(pose.rotation, "rad"))
+                : fmt::format("<p><code>{}</code> in <code>{}</code> is not determined</p>",
+                              html_name(pose.frame), html_name(pose.in));
+  }
   return html + "</div>\n";
 }
 

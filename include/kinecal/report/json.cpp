@@ -261,6 +261,7 @@ std::string json_report(const Findings& findings, std::span<const OutputFile> fi
       {"common_noise", detail::json(last.common)},
       {"parameters", json_list(result.calibrated, parameter)},
       {"pose", last.pose ? detail::json(*last.pose, last.elsewhere) : detail::Json()},
+      {"between", json_list(last.between, [](const auto& of) { return detail::json(of, 0.0); })},
       {"cameras", detail::json_cameras(last)},
       {"observability", json_list(findings.assessments, observability)},
       {"bad_samples", detail::json_captures(findings, last)},

@@ -119,6 +119,13 @@ namespace kinecal::detail {
                           reading(step.elsewhere, "m"));
     }
   }
+  if (findings.assessments.empty()) return text;
+  for (const PoseUncertainty& pose : findings.assessments.back().between) {
+    text += pose.determined
+                ? fmt::format("Pose of '{}' in '{}': +- {}, {}\n", pose.frame, pose.in,
+                              reading(pose.position, "m"), reading(pose.rotation, "rad"))
+                : fmt::format("Pose of '{}' in '{}': not determined\n", pose.frame, pose.in);
+  }
   return text;
 }
 

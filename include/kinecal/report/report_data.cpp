@@ -295,6 +295,7 @@ ReportData report_data(const Calibration& calibration, const Findings& findings,
   }
   for (const int parameter : last.observability.hold) data.hold.push_back(name(parameter));
   data.pose = last.pose;
+  data.between = last.between;
   data.cameras = last.maps;
   return data;
 }

@@ -2,6 +2,9 @@
 //
 // Each start is fitted by Levenberg-Marquardt.  After each step, the translations are solved again,
 // a linear problem for points and lines of sight.
+//
+// A grid covers two frames, not five.  So frames are searched for in stages: those of one error block, such as a camera and the
+// board that it sees; then, with these known, those of the next, such as another camera that sees the board.
 // Source: Nocedal, Wright, Numerical Optimization, 10.3; Golub, Pereyra, Separable Nonlinear Least
 // Squares: the Variable Projection Method, 2003.
 // SPDX-License-Identifier: Apache-2.0
@@ -66,10 +69,25 @@ struct FrameFits {
   int starts = 0;                    ///< of all of them
 };
 
+/// A minimum is worth finishing below this many times the least cost: ten times the error.
+inline constexpr double kWorthFinishing = 100.0;
+
+/// Frames that are fitted at once.
+struct SearchStage {
+  std::vector<UnknownFrame> frames;  ///< of unknown pose
+  std::vector<int>
+      terms;  ///< error blocks that need them and no frame of a later stage; empty: all
+};
+
+/// The order in which frames are searched for: next is the error block of two sensors with the fewest unknown frames; of these,
+/// the one with the most samples.
+[[nodiscard]] std::vector<SearchStage> search_stages(const AnyProblem& excerpt,
+                                                     std::span<const UnknownFrame> frames);
+
 /// True if one of these frames rotates: a search begins with rotations.
 [[nodiscard]] bool any_turns(std::span<const UnknownFrame> frames);
 
-/// Fits frames to a few samples from a grid of orientations: a round at a time, until five fits have
+/// Fits frames to a few samples from a grid of orientations, stage by stage: in each, a round at a time, until five fits have
 /// ended at the lowest minimum.
 /// @param excerpt  the problem with a few of its samples
 /// @param values   of all parameters of the problem's table

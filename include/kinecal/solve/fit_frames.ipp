@@ -7,6 +7,9 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "kinecal/evaluation/parallel.hpp"
 #include "kinecal/geometry/ldlt.hpp"
@@ -247,8 +250,8 @@ inline void go_on(std::vector<FittedFrames>& fits, int iterations, Evaluators& e
                                                          const PoseSearch& search) {
   constexpr int kMost = 40;  // iterations
   std::vector<FittedFrames> fits;
-  const int step = kGrid / search.starts;
-  for (int start = 0; start < search.starts; ++start) {
+  const int starts = any_turns(frames) ? search.starts : 1, step = kGrid / starts;
+  for (int start = 0; start < starts; ++start) {
     fits.push_back({0.0, start_values(frames, step * start + round, values), 1});
   }
   go_on(fits, search.first, evaluators, frames);
@@ -259,28 +262,110 @@ inline void go_on(std::vector<FittedFrames>& fits, int iterations, Evaluators& e
   return fits;
 }
 
-KINECAL_INLINE FrameFits fit_frames(const AnyProblem& excerpt, std::span<const UnknownFrame> frames,
-                                    const Eigen::VectorXd& values, int threads,
-                                    const PoseSearch& search) {
+KINECAL_INLINE std::vector<SearchStage> search_stages(const AnyProblem& excerpt,
+                                                      std::span<const UnknownFrame> frames) {
+  std::vector<std::set<std::size_t>> of_term(static_cast<std::size_t>(excerpt.num_terms()));
+  for (std::size_t t = 0; t < of_term.size(); ++t) {
+    const std::vector<int> touched = excerpt.touched_parameters(static_cast<int>(t));
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      const auto& axes = frames[f].axes;
+      const bool is_needed = std::any_of(axes.begin(), axes.end(), [&](int axis) {
+        return axis >= 0 && std::binary_search(touched.begin(), touched.end(), axis);
+      });
+      if (is_needed) of_term[t].insert(f);
+    }
+  }
+  std::vector<SearchStage> stages;
+  std::set<std::size_t> known;
+  const auto is_known = [&](std::size_t f) { return known.contains(f); };
+  const auto add = [&](const std::set<std::size_t>& needed) {
+    SearchStage& stage = stages.emplace_back();
+    for (const std::size_t f : needed) {
+      if (!is_known(f)) stage.frames.push_back(frames[f]);
+    }
+    const std::set<std::size_t> before = known;
+    known.insert(needed.begin(), needed.end());
+    for (std::size_t t = 0; t < of_term.size(); ++t) {
+      const std::set<std::size_t>& of = of_term[t];
+      const bool is_new =
+          std::any_of(of.begin(), of.end(), [&](auto f) { return !before.contains(f); });
+      if (is_new && std::all_of(of.begin(), of.end(), is_known))
+        stage.terms.push_back(static_cast<int>(t));
+    }
+  };
+  for (;;) {
+    std::optional<std::size_t> next;
+    std::pair<std::ptrdiff_t, int> least;  // unknown frames, and fewer than no samples
+    for (std::size_t t = 0; t < of_term.size(); ++t) {
+      const int term = static_cast<int>(t);
+      const auto open = std::count_if(of_term[t].begin(), of_term[t].end(),
+                                      [&](std::size_t f) { return !is_known(f); });
+      if (open == 0 || excerpt.term(term).sensors.size() < 2) continue;  // a plane is no pose
+      const std::pair<std::ptrdiff_t, int> now(open, -excerpt.samples_of(term));
+      if (next && now >= least) continue;
+      next = t;
+      least = now;
+    }
+    if (!next) break;
+    add(of_term[*next]);
+  }
+  if (stages.size() < 2 || known.size() < frames.size()) {
+    return {{{frames.begin(), frames.end()}, {}}};
+  }
+  return stages;
+}
+
+/// Fits the frames of a stage.
+/// @param values  of all parameters: where the others are
+[[nodiscard]] inline FrameFits fit_stage(const AnyProblem& excerpt, const SearchStage& stage,
+                                         const Eigen::VectorXd& values, int threads,
+                                         const PoseSearch& search) {
   constexpr int kOftenEnough = 5;
   FrameFits all;
-  if (!any_turns(frames)) return all;
   std::vector<int> columns;
-  for (const UnknownFrame& frame : frames) {
+  for (const UnknownFrame& frame : stage.frames) {
     std::copy_if(frame.axes.begin(), frame.axes.end(), std::back_inserter(columns),
                  [](int parameter) { return parameter >= 0; });
   }
   const FreeSet free(columns, excerpt.table().size());
   Evaluators evaluators(
       static_cast<std::size_t>(std::min(number_of_threads(threads), search.starts)));
-  for (auto& evaluator : evaluators) evaluator = excerpt.evaluator(free, 1);
+  for (auto& evaluator : evaluators) evaluator = excerpt.evaluator(free, 1, stage.terms);
   for (int round = 0; round < search.rounds; ++round) {
-    std::vector<FittedFrames> fits = fit_round(evaluators, frames, values, round, search);
+    std::vector<FittedFrames> fits = fit_round(evaluators, stage.frames, values, round, search);
+    all.starts += any_turns(stage.frames) ? search.starts : 1;
     std::move(fits.begin(), fits.end(), std::back_inserter(all.minima));
-    all.minima = distinct(std::move(all.minima), frames);
-    all.starts += search.starts;
+    all.minima = distinct(std::move(all.minima), stage.frames);
+    if (!any_turns(stage.frames)) break;
     if (!all.minima.empty() && all.minima.front().starts >= kOftenEnough) break;
   }
+  return all;
+}
+
+KINECAL_INLINE FrameFits fit_frames(const AnyProblem& excerpt, std::span<const UnknownFrame> frames,
+                                    const Eigen::VectorXd& values, int threads,
+                                    const PoseSearch& search) {
+  if (!any_turns(frames)) return {};
+  const std::vector<SearchStage> stages = search_stages(excerpt, frames);
+  FrameFits all = fit_stage(excerpt, stages.front(), values, threads, search);
+  if (stages.size() == 1 || all.minima.empty()) return all;
+  const double worth = kWorthFinishing * all.minima.front().cost;
+  std::erase_if(all.minima, [&](const FittedFrames& fit) { return fit.cost > worth; });
+  all.minima.resize(std::min(all.minima.size(), search.finished));
+  const auto evaluator = excerpt.evaluator(FreeSet({}, excerpt.table().size()), threads);
+  for (FittedFrames& fit : all.minima) {
+    for (std::size_t s = 1; s < stages.size() && std::isfinite(fit.cost); ++s) {
+      const FrameFits next = fit_stage(excerpt, stages[s], fit.values, threads, search);
+      all.starts += next.starts;
+      fit.cost = next.minima.empty() ? kNoFit : next.minima.front().cost;
+      if (!next.minima.empty()) fit.values = next.minima.front().values;
+    }
+    if (!std::isfinite(fit.cost)) continue;
+    const std::span<const double> at(fit.values.data(),
+                                     static_cast<std::size_t>(fit.values.size()));
+    fit.cost = evaluator->normal_equations(at, false, Losses::convex).cost;
+  }
+  all.minima = distinct(std::move(all.minima), frames);
   return all;
 }
 

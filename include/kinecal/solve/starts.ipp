@@ -151,8 +151,7 @@ class Starts {
   }
 
  private:
-  static constexpr double kWorthFinishing = 100.0;  // of the least cost: ten times the error
-  static constexpr double kRounding = 1e-16;        // of the cost at the start
+  static constexpr double kRounding = 1e-16;  // of the cost at the start
 
   [[nodiscard]] static double cost_at(AnyEvaluator& evaluator, const Eigen::VectorXd& values) {
     const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));

@@ -213,6 +213,14 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
     found.pose = pose_uncertainty(problem, inside, values, fit, found.uncertainty, samples,
                                   frames->first, frames->second);
   }
+  for (std::size_t b = 1; b < options.between.size(); ++b) {
+    const FrameOnRobot frame = frame_named(problem, samples, options.between[b]);
+    for (std::size_t a = 0; a < b; ++a) {
+      found.between.push_back(pose_uncertainty(problem, inside, values, fit, found.uncertainty,
+                                               samples, frame,
+                                               frame_named(problem, samples, options.between[a])));
+    }
+  }
   if (found.pose) found.elsewhere = detail::deviation_elsewhere(problem, found, values);
   return found;
 }

@@ -52,6 +52,7 @@ struct Assessment {
   std::vector<IdleGroup> idle;                ///< whose parameters improve nothing
   std::vector<PriorPull> pulls;               ///< priors that the samples contradict
   std::optional<PoseUncertainty> pose;        ///< of the frames that the first error block compares
+  std::vector<PoseUncertainty> between;       ///< of each pair of AssessOptions::between
   double elsewhere = 0.0;    ///< +- of that position over the limits of the joints, median, metres
   std::int64_t rows = 0;     ///< residuals, without priors
   double used = 0.0;         ///< of these, by poses that samples have of their own
@@ -70,6 +71,8 @@ struct Assessment {
 struct AssessOptions {
   int folds = 5;  ///< for held-out errors; as many as samples: leave-one-out; below 2: none
   ProgressMeter meter = {};  ///< called after each fold
+  /// Sensors, links or frames: the pose of each one in each one before it gets a +-.
+  std::vector<std::string> between = {};
 };
 
 /// Assesses each step of a finished calibration, at its result.
@@ -81,7 +84,8 @@ struct AssessOptions {
 
 /// Assesses one step.
 /// @param values  of all parameters of the table: its solution
-/// @throws std::domain_error  if a residual is undefined there
+/// @throws std::domain_error      if a residual is undefined there
+/// @throws std::invalid_argument  if a name of AssessOptions::between is unknown: see frame_named()
 [[nodiscard]] Assessment assess(const AnyProblem& problem, const FreeSet& free,
                                 ParameterValues values, std::span<const Sample> samples,
                                 const AssessOptions& options = {});

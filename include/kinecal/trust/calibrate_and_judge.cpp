@@ -74,6 +74,7 @@ class Procedure {
   [[nodiscard]] JudgedResult fit_once() const {
     AssessOptions assessing;
     assessing.meter = options_.solving.meter;
+    assessing.between = options_.between;
     assessing.folds = options_.folds > 0 ? options_.folds : static_cast<int>(used_.size());
     return judge_result(calibration_, calibrate(calibration_, options_.progress, options_.solving),
                         used_, assessing, options_.doubts, options_.refutable);

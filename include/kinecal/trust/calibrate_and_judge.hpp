@@ -62,6 +62,7 @@ struct ProcedureOptions {
   std::vector<std::string> doubts = {};  ///< about the input, as sentences: reasons of the verdict
   std::vector<std::string> refutable = {};  ///< those of the doubts that a fit to the noise refutes
   Progress progress = {};                   ///< called in each iteration
+  std::vector<std::string> between = {};    ///< see AssessOptions::between
 };
 
 /// Calibrates and judges.

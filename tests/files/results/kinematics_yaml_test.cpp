@@ -116,6 +116,98 @@ std::string refusal(const Robot& robot, const std::string& existing) {
   }
 }
 
+/// Two arms of UR on one base.
+Robot two_ur() {
+  std::vector<Joint> joints;
+  for (const std::string arm : {"left_", "right_"}) {
+    for (Joint joint : ur(arm).joints()) {
+      if (joint.type == JointType::fixed) joint.name = arm + joint.name;
+      joint.parent = joint.parent == "l0" ? "base" : arm + joint.parent;
+      joint.child = arm + joint.child;
+      joints.push_back(joint);
+    }
+  }
+  return Robot("two", joints);
+}
+
+TEST(KinematicsYaml, EachOfTwoArmsOfUrHasAFile) {
+  const std::string existing = with_hash(kinematics_yaml(ur(), {}, "", "k.yaml"), "calib_7");
+  EXPECT_THAT(refusal(two_ur(), existing),
+              AllOf(HasSubstr("k.yaml: is a calibration of UR"),
+                    HasSubstr("several arms: give left_=FILE, right_=FILE for each")));
+  const std::string left = kinematics_yaml(two_ur(), patches("left_"), existing, "k.yaml", "left_");
+  EXPECT_EQ(left, with_hash(kinematics_yaml(ur(), patches(), "", "k.yaml"), "calib_7"));
+  EXPECT_EQ(kinematics_yaml(two_ur(), patches("left_"), existing, "k.yaml", "right_"), existing)
+      << "nothing is known of the right arm";
+  EXPECT_EQ(kinematics_difference(two_ur(), left, "k.yaml", "right_").substr(0, 8), "shoulder");
+  EXPECT_EQ(kinematics_difference(two_ur(), existing, "k.yaml", "right_"), "");
+  EXPECT_THROW((void)kinematics_yaml(two_ur(), {}, existing, "k.yaml", "middle_"), InputError);
+}
+
+// ---- Franka
+
+/// An arm of seven joints and a flange, with the names of Franka.
+Robot franka(const std::string& prefix) {
+  std::vector<Joint> joints;
+  for (int i = 1; i <= 8; ++i) {
+    Joint joint{prefix + "joint" + std::to_string(i),
+                i == 8 ? JointType::fixed : JointType::revolute, prefix + std::to_string(i - 1),
+                prefix + std::to_string(i)};
+    if (i == 1) joint.parent = "base";
+    joint.origin = {rotation_from_rpy({0.1 * i, 0.0, 0.0}), {0.0, 0.1, 0.333}};
+    joint.axis = {0.0, 0.0, 1.0};
+    joints.push_back(joint);
+  }
+  return Robot("fr3", joints);
+}
+
+std::string franka_file(double roll_of_joint_3 = 0.3) {
+  std::string text;
+  for (int i = 1; i <= 8; ++i) {
+    text += "joint" + std::to_string(i) +
+            ":\n  kinematic:\n    x: 0\n    y: 0.1\n    z: 0.333\n    roll: " +
+            std::to_string(i == 3 ? roll_of_joint_3 : 0.1 * i) + "\n    pitch: -0\n    yaw: 0\n";
+  }
+  return text;
+}
+
+TEST(KinematicsYaml, AFileOfFrankaKeepsItsForm) {
+  const Robot robot = franka("fr3_");
+  const std::vector<JointPatch> moved = {{"fr3_joint4", 0.01, {}}};
+  const std::string text = kinematics_yaml(robot, moved, franka_file(), "k.yaml");
+  EXPECT_THAT(
+      text, AllOf(HasSubstr("\njoint1:\n  kinematic:\n    x: 0\n    y: 0.1\n"),
+                  HasSubstr("\njoint8:\n"), Not(HasSubstr("fr3_")), Not(HasSubstr("kinematics:"))));
+  const YAML::Node of = YAML::Load(text)["joint4"]["kinematic"];
+  const Matrix3<double> expected =
+      rotation_from_rpy({0.4, 0.0, 0.0}) * exp(Vector3<double>(0.0, 0.0, 0.01));
+  const Vector3<double> rpy(of["roll"].as<double>(), of["pitch"].as<double>(),
+                            of["yaw"].as<double>());
+  EXPECT_LE((rotation_from_rpy(rpy) - expected).norm(), kSamePose);
+  EXPECT_EQ(kinematics_yaml(robot, moved, text, "k.yaml"), text) << "as it reads its own";
+}
+
+TEST(KinematicsYaml, AFileOfFrankaIsNotReplacedByNominalNumbersOrAnotherRobot) {
+  EXPECT_EQ(kinematics_difference(franka("fr3_"), franka_file(), "k.yaml"), "");
+  EXPECT_EQ(kinematics_difference(franka("fr3_"), franka_file(0.302), "k.yaml"),
+            "joint3 by 0.11 deg");
+  EXPECT_THAT(refusal(ur(), franka_file()),
+              HasSubstr("k.yaml: is a file of Franka, but the robot has no joint 'joint1'"));
+  EXPECT_THAT(refusal(franka("fr3_"), franka_file() + "  inertia: {mass: 1}\n"),
+              HasSubstr("k.yaml:65: 'inertia' is no origin of a joint and would be lost"));
+}
+
+TEST(KinematicsYaml, ZerosAreAListInTheUnitThatIsAskedFor) {
+  const std::vector<JointPatch> zeros = {{"elbow_joint", -0.5 * 3.141592653589793, {}}};
+  const YAML::Node radians = YAML::Load(zeros_yaml(ur(), zeros, false)),
+                   degrees = YAML::Load(zeros_yaml(ur(), zeros, true));
+  EXPECT_NEAR(radians["elbow_joint"].as<double>(), -1.5707963267948966, 1e-15);
+  EXPECT_NEAR(degrees["elbow_joint"].as<double>(), -90.0, 1e-12);
+  EXPECT_EQ(degrees["wrist_3_joint"].as<double>(), 0.0);
+  EXPECT_EQ(degrees.size(), 6u) << "a flange has no zero";
+  EXPECT_THAT(zeros_yaml(ur(), zeros, true), HasSubstr("# Units: degrees"));
+}
+
 TEST(KinematicsYaml, AFileThatIsNoneIsNotReplaced) {
   EXPECT_THAT(refusal(ur(), "joints: [a]\n"),
               StartsWith("k.yaml: exists and has no 'kinematics:'"));

@@ -263,7 +263,7 @@ TEST_F(HandEyeColumns, CornersAndTheBoardComeFromTablesOfTheirOwn) {
   write("target.csv", "id,x,y,z\n4,36.2,72.4,0\n");
   write("poses.csv", "image,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n1,0,0,1,0,0,0,1\n");
   HandEyeTables tables{path("poses.csv")};
-  tables.corners = path("corners.csv");
+  tables.corners = {{"camera", path("corners.csv")}};
   EXPECT_THROW((void)columns_of(tables), InputError) << "no board";
   tables.target = path("target.csv");
   write("columns.yaml", columns_of(tables));

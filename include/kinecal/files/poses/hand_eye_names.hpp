@@ -1,7 +1,8 @@
 // The names of a hand-eye calibration without a URDF: of its links, joints, frames and sensors.
 //
 //   base_link --flange_joint, floating--> flange        the poses
-//   base_link or flange --camera_joint, fixed--> camera the camera beside the robot, or on its hand
+//   base_link or flange --camera_joint, fixed--> camera the camera beside the robot, or on its hand; several have
+//                                                       names of their own: left, on left_joint
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -7,15 +7,15 @@
 
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/tools/identify/candidates.ipp"
-#include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
+#include "kinecal/tools/init/several_answers.hpp"
 
 namespace kinecal {
 
 Config config_from_samples(const Robot& robot, std::span<const Sample> samples) {
   std::string text;
   try {
-    text = initial_config(robot, answers_from_samples(robot, samples, {}));
+    text = initial_config(robot, all_answers_from_samples(robot, samples, {}));
   } catch (const InputError& error) {
     std::string why = error.what();  // "--arm: ...": of options that only init has
     if (why.starts_with("--")) why.erase(0, why.find(": ") + 2);

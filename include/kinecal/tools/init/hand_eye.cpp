@@ -321,25 +321,49 @@ struct CornerColumns {
 /// The observations of corners, as columns.yaml has them.
 [[nodiscard]] std::string corners_text(const HandEyeTables& tables,
                                        const std::string& output_folder, const HandEyeTable& poses,
-                                       const HandEyeTable& corners, const HandEyeTable& target,
-                                       const CornerColumns& columns) {
+                                       const std::vector<HandEyeTable>& corners,
+                                       const HandEyeTable& target,
+                                       const std::vector<CornerColumns>& columns) {
   const auto path = [&](const std::string& file) {
     const auto folder = std::filesystem::absolute(output_folder.empty() ? "." : output_folder);
     return name_to_yaml(std::filesystem::proximate(file, folder).string());
   };
-  return fmt::format(
-             "\nobservations:\n"
-             " - sensor: {}  # what carries the board: where its corners are\n   frame: {}\n"
-             "   table: {}\n   unit: {}\n   points: [[{}]]\n   id_columns: [{}]\n",
-             name_to_yaml(tables.holder), HandEyeNames::kTarget, path(tables.target),
-             target.is_millimetres(columns.place) ? "millimetres" : "metres",
-             fmt::join(target.names(columns.place), ", "),
-             target.names({columns.target_id}).front()) +
-         fmt::format(
-             " - sensor: camera\n   frame: {}\n   table: {}\n   match: {}\n   pixels: [[{}]]\n"
-             "   id_columns: [{}]\n",
-             HandEyeNames::kCamera, path(tables.corners), poses.names({columns.of_pose}).front(),
-             fmt::join(corners.names(columns.pixel), ", "), corners.names({columns.id}).front());
+  const CornerColumns& any = columns.front();
+  std::string text = fmt::format(
+      "\nobservations:\n"
+      " - sensor: {}  # what carries the board: where its corners are\n   frame: {}\n"
+      "   table: {}\n   unit: {}\n   points: [[{}]]\n   id_columns: [{}]\n",
+      name_to_yaml(tables.holder), HandEyeNames::kTarget, path(tables.target),
+      target.is_millimetres(any.place) ? "millimetres" : "metres",
+      fmt::join(target.names(any.place), ", "), target.names({any.target_id}).front());
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const CornerColumns& of = columns[c];
+    text += fmt::format(
+        " - sensor: {0}\n   frame: {0}\n   table: {1}\n   match: {2}\n   pixels: [[{3}]]\n"
+        "   id_columns: [{4}]\n",
+        name_to_yaml(tables.corners[c].camera), path(tables.corners[c].file),
+        poses.names({of.of_pose}).front(), fmt::join(corners[c].names(of.pixel), ", "),
+        corners[c].names({of.id}).front());
+  }
+  return text;
+}
+
+/// @throws InputError  if no row of a camera's corners belongs to a pose
+void check_seen(const CameraCorners& camera, const HandEyeTable& poses, const HandEyeTable& corners,
+                const CornerColumns& columns) {
+  std::set<std::string> known;
+  for (std::size_t row = 0; row < poses.rows(); ++row)
+    known.insert(poses.text(row, columns.of_pose));
+  for (std::size_t row = 0; row < corners.rows(); ++row) {
+    if (known.contains(corners.text(row, columns.of_corner))) return;
+  }
+  const std::string of_pose = poses.names({columns.of_pose}).front();
+  throw InputError(fmt::format(
+      "{}: camera '{}' sees nothing: {}", camera.file, camera.camera,
+      corners.rows() == 0 ? std::string("the table has no corners")
+                          : fmt::format("no {} of a corner ({}, ...) is one of {} ({}, ...)",
+                                        of_pose, corners.text(0, columns.of_corner), poses.file(),
+                                        poses.rows() == 0 ? "" : poses.text(0, columns.of_pose))));
 }
 
 // What three angles are: names and values tell little, poses of something that the camera sees tell all.
@@ -601,9 +625,9 @@ void choose_marker_form(const HandEyeTable& table, const HandEyeTables& tables,
 }  // namespace
 }  // namespace detail
 
-std::string hand_eye_urdf(bool camera_on_hand) {
+std::string hand_eye_urdf(bool camera_on_hand, const std::vector<std::string>& cameras) {
   using Names = HandEyeNames;
-  return fmt::format(
+  std::string text = fmt::format(
       R"(<?xml version="1.0"?>
 <!-- A robot of which only the poses of the flange are known: the samples have them. -->
 <robot name="hand_eye">
@@ -613,17 +637,21 @@ std::string hand_eye_urdf(bool camera_on_hand) {
     <parent link="{0}"/>
     <child link="{1}"/>
   </joint>
-  <!-- The camera's optical frame: z ahead, x right, y down. -->
-  <link name="{3}"/>
-  <joint name="{4}" type="fixed">
-    <parent link="{5}"/>
-    <child link="{3}"/>
+  <!-- The optical frame of a camera: z ahead, x right, y down. -->
+)",
+      Names::kBase, Names::kFlange, Names::kFlangeJoint);
+  for (const std::string& camera : cameras) {
+    text += fmt::format(
+        R"(  <link name="{0}"/>
+  <joint name="{0}_joint" type="fixed">
+    <parent link="{1}"/>
+    <child link="{0}"/>
     <origin xyz="0 0 0" rpy="0 0 0"/>
   </joint>
-</robot>
 )",
-      Names::kBase, Names::kFlange, Names::kFlangeJoint, Names::kCamera, Names::kCameraJoint,
-      camera_on_hand ? Names::kFlange : Names::kBase);
+        camera, camera_on_hand ? Names::kFlange : Names::kBase);
+  }
+  return text + "</robot>\n";
 }
 
 std::string hand_eye_pose_config(bool camera_on_hand) {
@@ -700,11 +728,20 @@ std::string hand_eye_columns(const HandEyeTables& tables, const std::string& out
         form_text(poses, object, "   "), fmt::join(poses.names(object.indices), ", "));
   } else if (!tables.corners.empty()) {
     if (tables.target.empty()) {
-      throw InputError(tables.corners + ": needs the table of where the corners are on the board");
+      throw InputError(tables.corners.front().file +
+                       ": needs the table of where the corners are on the board");
     }
-    const HandEyeTable corners(tables.corners), target(tables.target);
-    const CornerColumns found = corner_columns(poses, corners, target);
-    choose(boards_of(poses, corners, target, found));
+    const HandEyeTable target(tables.target);
+    std::vector<HandEyeTable> corners;
+    std::vector<CornerColumns> found;
+    std::size_t most = 0;  // the camera with the most corners says most of what the angles are
+    for (const CameraCorners& camera : tables.corners) {
+      corners.emplace_back(camera.file);
+      found.push_back(corner_columns(poses, corners.back(), target));
+      check_seen(camera, poses, corners.back(), found.back());
+      if (corners.back().rows() > corners[most].rows()) most = corners.size() - 1;
+    }
+    choose(boards_of(poses, corners[most], target, found[most]));
     observations = corners_text(tables, output_folder, poses, corners, target, found);
   }
   if (columns.why.empty() && tables.form.empty()) choose_form_by_values(poses, columns);

@@ -14,22 +14,31 @@
 
 namespace kinecal {
 
-/// The URDF of a flange and a camera.
+/// The URDF of a flange and cameras.
 /// @param camera_on_hand  on the flange; else beside the robot
-[[nodiscard]] std::string hand_eye_urdf(bool camera_on_hand);
+/// @param cameras         their names: each is a link, on a joint <name>_joint
+[[nodiscard]] std::string hand_eye_urdf(bool camera_on_hand,
+                                        const std::vector<std::string>& cameras = {
+                                            HandEyeNames::kCamera});
 
 /// The configuration for samples that have poses of an object in the camera: read_hand_eye_samples().
 /// @param camera_on_hand  on the flange, and the object in the world; else the other way around
 [[nodiscard]] std::string hand_eye_pose_config(bool camera_on_hand);
 
+/// A table of what a camera saw: a row for each corner.
+struct CameraCorners {
+  std::string camera;  ///< its name
+  std::string file;    ///< image, id, u, v
+};
+
 /// Tables of a hand-eye calibration.
 struct HandEyeTables {
-  std::string poses;           ///< file: a row for each pose of the flange
-  std::string form = {};       ///< of the poses, see pose_form(); empty: by names of columns
-  bool inverse = false;        ///< the poses are those of the base in the flange
-  std::string corners = {};    ///< file: a row for each corner seen; empty: they are in photographs
-  std::string target = {};     ///< file: where the corners are on the board; with `corners` only
-  std::string holder = "arm";  ///< sensor_name of the board: what holds it
+  std::string poses;      ///< file: a row for each pose of the flange
+  std::string form = {};  ///< of the poses, see pose_form(); empty: by names of columns
+  bool inverse = false;   ///< the poses are those of the base in the flange
+  std::vector<CameraCorners> corners = {};  ///< of each camera; empty: they are in photographs
+  std::string target = {};      ///< file: where the corners are on the board; with `corners` only
+  std::string holder = "arm";   ///< sensor_name of the board: what holds it
   bool camera_on_hand = false;  ///< else beside the robot
   bool has_marker = false;      ///< each row also has the pose of a marker in the camera
 };
@@ -43,7 +52,8 @@ struct HandEyeTables {
 /// comment has the others.  Without, rx ry rz are a rotation vector unless they are degrees, or longer than half a turn.
 /// @param output_folder  of the columns.yaml, to which the names of tables are relative
 /// @param diagnostics    receives a doubt if another form than the given one fits
-/// @throws InputError  "file: ..." if a table cannot be read, or what a column means is not clear
+/// @throws InputError  "file: ..." if a table cannot be read, what a column means is not clear, or no row of corners belongs
+///                     to a pose
 [[nodiscard]] std::string hand_eye_columns(const HandEyeTables& tables,
                                            const std::string& output_folder,
                                            Diagnostics& diagnostics);

@@ -156,6 +156,7 @@ struct InitAnswers {
       {};  ///< metres: places of sockets in one frame; empty: not known
   Vector3<double> center =
       Vector3<double>::Zero();  ///< where a sphere or the end of a bar may be, in the base
+  bool known_lens = false;      ///< the intrinsics of the camera are held
 };
 
 /// The sensor_name of what holds the target: the arm, or a board in the world.

@@ -55,6 +55,22 @@ namespace {
   return "\n# The joints that move, by controller: for `kinecal capture` only.\nchains:\n" + text;
 }
 
+/// The same of several arms and cameras, each joint once.
+[[nodiscard]] std::string chains_text(const Robot& robot, const std::vector<InitAnswers>& all) {
+  std::vector<std::string> known;
+  std::string text;
+  for (const InitAnswers& answers : all) {
+    for (const std::string& link : {answers.arm, answers.camera}) {
+      if (link.empty()) continue;
+      const std::vector<std::string> joints = drives_to(robot, answers.base, link, known);
+      known.insert(known.end(), joints.begin(), joints.end());
+      text += chain_text(link, joints);
+    }
+  }
+  if (text.empty()) return "";
+  return "\n# The joints that move, by controller: for `kinecal capture` only.\nchains:\n" + text;
+}
+
 /// The keys that all finders of a camera have.
 [[nodiscard]] std::string finder_head(const InitAnswers& answers, const std::string& name,
                                       const std::string& type) {
@@ -88,19 +104,19 @@ namespace {
          "    size: 0.0      # of a square, metres; measure it\n";
 }
 
-[[nodiscard]] std::string board_text(const InitAnswers& answers) {
+[[nodiscard]] std::string board_text(const InitAnswers& answers, const std::string& name) {
   const char* of = answers.board == InitBoard::apriltag  ? "AprilTagFinder"
                    : answers.board == InitBoard::charuco ? "CharucoFinder"
                                                          : "CheckerboardFinder";
   const std::string type = of + std::string(answers.camera_type == "camera3d" ? "" : "2d");
-  return finder_head(answers, "board", type) +
+  return finder_head(answers, name, type) +
          fmt::format("    chain_sensor_name: {}\n    frame_id: {}\n",
                      name_to_yaml(holder_of(answers)), name_to_yaml(answers.target_frame)) +
          board_numbers(answers.board);
 }
 
-[[nodiscard]] std::string leds_text(const InitAnswers& answers) {
-  return finder_head(answers, "leds", "LedFinder") +
+[[nodiscard]] std::string leds_text(const InitAnswers& answers, const std::string& name) {
+  return finder_head(answers, name, "LedFinder") +
          fmt::format(
              "    chain_sensor_name: {}\n    gripper_led_frame: {}\n"
              "    action: /gripper_controller/led_action  # switches the LEDs\n"
@@ -136,7 +152,13 @@ namespace {
 }  // namespace detail
 
 std::string initial_capture(const Robot& robot, const InitAnswers& given) {
-  const InitAnswers answers = with_proposals(robot, given);
+  return initial_capture(robot, std::vector<InitAnswers>{given});
+}
+
+std::string initial_capture(const Robot& robot, const std::vector<InitAnswers>& given) {
+  std::vector<InitAnswers> all;
+  for (const InitAnswers& one : given) all.push_back(with_proposals(robot, one));
+  const InitAnswers& answers = all.front();
   // No finder reports where a reflector is, or LEDs in pixels; clouds and masks are taken as they are.
   const bool in_pixels = answers.camera_type == "camera2d";
   if (answers.target == InitTarget::tracker || answers.target == InitTarget::robot) return "";
@@ -151,9 +173,17 @@ std::string initial_capture(const Robot& robot, const InitAnswers& given) {
       "{}: what to look for, with the names of its configuration.\n"
       "# Fill in what is zero: sizes decide the scale of the result, so measure them.\n",
       kInitialCaptureMark);
-  text += detail::chains_text(robot, answers) + "\nfeatures:\n";
-  if (answers.target == InitTarget::leds) text += detail::leds_text(answers);
-  if (is_board(answers.target)) text += detail::board_text(answers);
+  text += all.size() == 1 ? detail::chains_text(robot, answers) : detail::chains_text(robot, all);
+  text += "\nfeatures:\n";
+  std::vector<std::string> holders;
+  for (const InitAnswers& one : all) {
+    const std::string holder = holder_of(one);
+    if (std::find(holders.begin(), holders.end(), holder) != holders.end()) continue;
+    const std::string of = holders.empty() ? "" : "_of_" + holder;
+    holders.push_back(holder);
+    if (one.target == InitTarget::leds) text += detail::leds_text(one, "leds" + of);
+    if (is_board(one.target)) text += detail::board_text(one, "board" + of);
+  }
   if (answers.target == InitTarget::ground || answers.with_ground) {
     text += detail::finder_head(answers, "ground", "PlaneFinder");
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/tools/init/init_answers.hpp"
@@ -16,6 +17,9 @@ inline constexpr const char* kInitialCaptureMark = "# Capture for 'kinecal init'
 /// a board are zero, and readers refuse it until they are filled in: a guess would be a wrong scale.
 /// @param given  as of initial_config(), which checks them
 [[nodiscard]] std::string initial_capture(const Robot& robot, const InitAnswers& given);
+/// The same for several arms and cameras: see answers_of_all().
+[[nodiscard]] std::string initial_capture(const Robot& robot,
+                                          const std::vector<InitAnswers>& given);
 
 /// The keys of a capture.yaml that must agree with the configuration: "chain_sensor_name: board,
 /// ..."

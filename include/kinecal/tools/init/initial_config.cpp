@@ -140,7 +140,7 @@ void free_camera(InitPlan& plan, const InitAnswers& answers, bool floor_only) {
   const auto add = [&](const char* part, const std::string& why) {
     plan.free_params.push_back({why, answers.camera_name + "_" + part, {}});
   };
-  if (!floor_only) {
+  if (!floor_only && !answers.known_lens) {
     add("fx",
         "Focal lengths and image centre, relative to the driver's values: 0.01 is one percent.");
     for (const char* part : {"fy", "cx", "cy"}) add(part, "");
@@ -637,6 +637,48 @@ void free_places(InitPlan& plan, const InitAnswers& answers) {
   }
 }
 
+// Several cameras and arms in one problem.
+
+/// Adds the entries that a list does not have yet, by their names.
+void add_new(std::vector<InitEntry>& list, std::vector<InitEntry> more) {
+  for (InitEntry& entry : more) {
+    const auto is_known = [&](const InitEntry& known) { return known.name == entry.name; };
+    if (std::none_of(list.begin(), list.end(), is_known)) list.push_back(std::move(entry));
+  }
+}
+
+/// The plans of all answers as one.  Blocks that compare get the names of what they compare.
+[[nodiscard]] InitPlan plan_all(const Robot& robot, const std::vector<InitAnswers>& all) {
+  InitPlan plan;
+  for (const InitAnswers& answers : all) {
+    InitPlan one = plan_initial_config(robot, answers);
+    for (InitEntry& block : one.error_blocks) {
+      if (all.size() == 1 || block.name.starts_with("restrict_")) continue;
+      if (needs_camera(answers.target)) block.name += "_" + answers.camera_name;
+      const auto is_known = [&](const InitEntry& known) { return known.name == block.name; };
+      if (std::any_of(plan.error_blocks.begin(), plan.error_blocks.end(), is_known)) {
+        block.name += "_" + holder_of(answers);
+      }
+    }
+    add_new(plan.models, std::move(one.models));
+    add_new(plan.free_params, std::move(one.free_params));
+    add_new(plan.free_frames, std::move(one.free_frames));
+    add_new(plan.initial_values, std::move(one.initial_values));
+    add_new(plan.error_blocks, std::move(one.error_blocks));
+    for (InitLeftOut& left_out : one.left_out) {
+      const auto is_known = [&](const InitLeftOut& known) { return known.joint == left_out.joint; };
+      if (std::none_of(plan.left_out.begin(), plan.left_out.end(), is_known)) {
+        plan.left_out.push_back(std::move(left_out));
+      }
+    }
+  }
+  std::erase_if(plan.left_out, [&](const InitLeftOut& left_out) {
+    return std::any_of(plan.free_params.begin(), plan.free_params.end(),
+                       [&](const InitEntry& free) { return free.name == left_out.joint; });
+  });
+  return plan;
+}
+
 // Checks the answers of `kinecal init` before planning.
 
 /// Checks the frames of several reflectors.
@@ -840,9 +882,16 @@ namespace {
 }  // namespace detail
 
 std::string initial_config(const Robot& robot, const InitAnswers& given) {
-  const InitAnswers answers = with_proposals(robot, given);
-  detail::check_answers(robot, answers);
-  return detail::plan_to_yaml(robot, answers, detail::plan_initial_config(robot, answers));
+  return initial_config(robot, std::vector<InitAnswers>{given});
+}
+
+std::string initial_config(const Robot& robot, const std::vector<InitAnswers>& given) {
+  std::vector<InitAnswers> all;
+  for (const InitAnswers& answers : given) {
+    all.push_back(with_proposals(robot, answers));
+    detail::check_answers(robot, all.back());
+  }
+  return detail::plan_to_yaml(robot, all.front(), detail::plan_all(robot, all));
 }
 
 }  // namespace kinecal

@@ -3,11 +3,13 @@
 #include "kinecal/trust/uncertainty/compared_frames.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "kinecal/text/frame_name.hpp"
+#include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
 
@@ -61,6 +63,21 @@ std::optional<std::pair<FrameOnRobot, FrameOnRobot>> compared_frames(
     if (one.name() != other.name() && !is_own) return std::pair(one, other);
   }
   return std::nullopt;
+}
+
+FrameOnRobot frame_named(const AnyProblem& problem, std::span<const Sample> samples,
+                         const std::string& name) {
+  std::vector<std::string> names = problem.robot().link_names();
+  for (int s = 0; s < static_cast<int>(problem.sensors().size()); ++s) {
+    const FrameOnRobot frame = detail::frame_of_features(problem, s, samples);
+    const std::string& sensor = problem.sensors()[static_cast<std::size_t>(s)].mount().name;
+    if (name == sensor || (!frame.frame.empty() && name == frame.frame)) return frame;
+    names.push_back(sensor);
+    if (!frame.frame.empty()) names.push_back(frame.frame);
+  }
+  if (problem.robot().has_link(name)) return {name};
+  throw std::invalid_argument("'" + name + "' is no sensor, link or frame of the samples" +
+                              did_you_mean(name, names));
 }
 
 }  // namespace kinecal

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "kinecal/problem/any_problem.hpp"
@@ -17,5 +18,10 @@ namespace kinecal {
 /// @returns  nullopt if no error block has samples, or if it has only one sensor
 [[nodiscard]] std::optional<std::pair<FrameOnRobot, FrameOnRobot>> compared_frames(
     const AnyProblem& problem, std::span<const Sample> samples);
+
+/// The frame of a name: that of a sensor's features, a link, or a virtual frame of the samples.
+/// @throws std::invalid_argument  if nothing has the name, with the nearest one
+[[nodiscard]] FrameOnRobot frame_named(const AnyProblem& problem, std::span<const Sample> samples,
+                                       const std::string& name);
 
 }  // namespace kinecal
