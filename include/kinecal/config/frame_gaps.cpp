@@ -114,9 +114,11 @@ class FrameTies {
       }
     }
     std::vector<FrameGap> gaps;
-    for (const auto& [group, boundary] : groups) {
-      if (group == tied_.root(base_) || boundary.second.size() > 1) continue;
-      FrameGap gap{{boundary.first.begin(), boundary.first.end()}, {}, {}};
+    for (const auto& of_group : groups) {
+      const std::string& group = of_group.first;
+      const auto& [frames, parts] = of_group.second;
+      if (group == tied_.root(base_) || parts.size() > 1) continue;
+      FrameGap gap{{frames.begin(), frames.end()}, {}, {}};
       for (const auto& [sensor, places] : sensors_) {
         const bool is_in = std::any_of(places.begin(), places.end(), [&](const std::string& place) {
           return tied_.root(place) == group;

@@ -48,7 +48,8 @@ TEST_F(Cell, ReachesTheReferenceCostFromNothing) {
   EXPECT_NEAR(result.steps.front().final_cost / 12.485902, 1.0, 1e-6)
       << to_string(result.steps.front().starts);
   for (std::size_t c = 0; c < cell.cameras.size(); ++c) {
-    const auto off = distance(test::pose_of_camera(result.table, cell.cameras[c]), cell.truth[c]);
+    const auto off =
+        test::distance(test::pose_of_camera(result.table, cell.cameras[c]), cell.truth[c]);
     EXPECT_LE(off.metres, kMostMetres) << cell.cameras[c];
     EXPECT_LE(off.radians, kMostRadians) << cell.cameras[c];
   }
@@ -82,7 +83,7 @@ TEST_F(Cell, FromTenPosesIsBetterThanSingleSolves) {
     ASSERT_TRUE(result.converged) << set << ": " << result.termination;
     for (std::size_t c = 0; c < 4; ++c) {
       const double off =
-          distance(test::pose_of_camera(result.table, cell.cameras[c]), cell.truth[c]).metres;
+          test::distance(test::pose_of_camera(result.table, cell.cameras[c]), cell.truth[c]).metres;
       EXPECT_LE(off, 5e-3) << "set " << set << ", camera " << c + 1;
       const std::vector<Sample> own = single[c].some(is_in);
       const auto views = std::count_if(own.begin(), own.end(), [](const Sample& sample) {
@@ -92,7 +93,7 @@ TEST_F(Cell, FromTenPosesIsBetterThanSingleSolves) {
       const CalibrationResult one = calibrate(assembled(single[c], own, true));
       together += off * off;
       alone += std::pow(
-          distance(test::pose_of_camera(one.table, single[c].cameras[0]), single[c].truth[0])
+          test::distance(test::pose_of_camera(one.table, single[c].cameras[0]), single[c].truth[0])
               .metres,
           2);
     }

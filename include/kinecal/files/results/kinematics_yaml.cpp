@@ -268,8 +268,7 @@ std::string zeros_yaml(const Robot& robot, const std::vector<JointPatch>& patche
                                     [&](const JointPatch& one) { return one.joint == joint.name; });
     const double unit = !degrees ? 1.0 : turns(joint.type) ? 180.0 / std::numbers::pi : 1e3;
     const double zero = patch == patches.end() ? 0.0 : patch->offset * unit;
-    text += fmt::format("{}: {}\n", detail::name_to_yaml(joint.name),
-                        detail::number_to_yaml(zero + 0.0));
+    text += fmt::format("{}: {}\n", detail::name_to_yaml(joint.name), number_to_yaml(zero + 0.0));
   }
   return text;
 }
