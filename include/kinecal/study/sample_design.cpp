@@ -32,7 +32,7 @@ class DesignRows {
       : changing_(make, values, samples), noise_(noise) {
     const StudyRows rows = changing_.rows(changing_.samples(), &free);
     const Stack no_rows{
-        {}, Eigen::MatrixXd(0, free.size()), {}, {}};  // of a sample that no block uses
+        {}, Eigen::MatrixXd(0, free.size()), {}, {}, {}};  // of a sample that no block uses
     stacks_.assign(changing_.samples().size(), no_rows);
     for (const auto& [key, jacobian] : rows.jacobian) {
       Stack& stack = stacks_[sample_of(key)];
