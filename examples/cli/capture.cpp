@@ -110,7 +110,10 @@ class Follower {
     Config config = read_config(options.calibrate, diagnostics);
     print_or_throw(diagnostics);
     if (!options.until.empty()) until_ = parse_accuracy(options.until);
-    follower_.emplace(std::move(config), robot, until_ ? until_->frame : "", urdf);
+    CalibrationOptions calibrating;
+    calibrating.mesh_paths = options.mesh_paths;
+    follower_.emplace(std::move(config), robot, until_ ? until_->frame : "", urdf, options.urdf,
+                      std::move(calibrating));
   }
 
   /// Takes a sample; prints what it tells on one line.
@@ -254,6 +257,7 @@ CalibrateOptions calibration_of(const CaptureOptions& options) {
   calibrating.urdf = options.urdf;
   calibrating.config = options.calibrate;
   calibrating.samples = {options.output};
+  calibrating.mesh_paths = options.mesh_paths;
   calibrating.output = options.result;
   calibrating.force = options.force;
   if (!options.report.empty()) calibrating.reports = {options.report};

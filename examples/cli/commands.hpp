@@ -192,7 +192,7 @@ struct RecheckOptions {
   std::vector<std::string> samples;     ///< new ones
   std::vector<std::string> cameras;     ///< NAME=FILE
   std::optional<Recorded> recorded;     ///< before or after the result was installed
-  std::vector<std::string> mesh_paths;  ///< of verify: where the URDF's packages may be
+  std::vector<std::string> mesh_paths;  ///< where the URDF's packages may be
   std::string report;                   ///< JSON is written there
   double level = 0.01;                  ///< of verify: share of false alarms
   double fail_above =
@@ -235,7 +235,8 @@ struct StudyFiles {
   std::string have;                  ///< poses in which samples exist already
   std::string scene;                 ///< file; empty: defaults
   std::string target;                ///< empty: the scene's
-  int seed = 0;                      ///< zero: the scene's
+  std::vector<std::string> mesh_paths = {};  ///< where the URDF's packages may be
+  int seed = 0;                              ///< zero: the scene's
   std::vector<std::string> tell_apart = {};  ///< two candidates of identify; empty: none
   ShellCommand command = {};                 ///< as the user typed it, for the page
 };
@@ -291,13 +292,14 @@ struct CaptureOptions {
   std::string output;       ///< file of samples
   std::string calibrate;    ///< configuration of a calibration that follows; empty: none
   std::string until;        ///< "gripper 1 mm"; empty: all poses
-  std::string result;       ///< folder of that calibration
-  std::string report;       ///< of that calibration: a page or JSON; empty: none
-  std::string sheet;        ///< page of all views; empty: none
-  double velocity = 1.0;    ///< factor
-  bool manual = false;      ///< a person moves the robot
-  bool resume = false;      ///< go on with the samples of the output
-  bool force = false;       ///< replace results
+  std::vector<std::string> mesh_paths = {};  ///< where the URDF's packages may be
+  std::string result;                        ///< folder of that calibration
+  std::string report;                        ///< of that calibration: a page or JSON; empty: none
+  std::string sheet;                         ///< page of all views; empty: none
+  double velocity = 1.0;                     ///< factor
+  bool manual = false;                       ///< a person moves the robot
+  bool resume = false;                       ///< go on with the samples of the output
+  bool force = false;                        ///< replace results
 };
 
 /// Moves a robot through poses and records what its finders see.

@@ -22,6 +22,7 @@ std::string json(const StoredResult& result, const NewSamples& fresh) {
                              {"verdict", result.verdict},
                              {"samples", fresh.samples.size()},
                              {"assumed", fresh.assumed},
+                             {"off_robot", fresh.off_robot},
                              {"error_blocks", fit_json(result, fresh)}});
 }
 
@@ -42,8 +43,10 @@ std::string change_line(const std::vector<FitChange>& changes) {
 int evaluate(const RecheckOptions& options) {
   const StoredResult result = read_result(options.result);
   if (!options.report.empty()) check_json(options.report, options.samples);
-  const NewSamples fresh =
-      read_new_samples(result, {options.samples, options.cameras, options.recorded});
+  const NewSamples fresh = read_new_samples(result, {.samples = options.samples,
+                                                     .cameras = options.cameras,
+                                                     .recorded = options.recorded,
+                                                     .mesh_paths = options.mesh_paths});
   print(fresh.diagnostics);
   if (!fresh.diagnostics.errors.empty()) return kBadInput;
   std::string text = fmt::format("Result {} ({}) on {}; nothing is solved\n", result.folder,
@@ -52,12 +55,13 @@ int evaluate(const RecheckOptions& options) {
   text += "\n" + fit_text(result, fresh) + "\n" + worst_text(result, fresh);
   const std::vector<FitChange> changes = fit_changes(result, fresh);
   if (!changes.empty()) text += "\n" + change_line(changes);
+  for (const std::string& off : fresh.off_robot) text += "worse: " + off + "\n";
   show(text, options.manner);
   if (!options.report.empty()) write_output(options.report, json(result, fresh));
-  const bool fails = options.fail_above > 0.0 &&
-                     std::any_of(changes.begin(), changes.end(), [&](const FitChange& change) {
-                       return !(change.times() <= options.fail_above);
-                     });
+  const bool is_worse = std::any_of(changes.begin(), changes.end(), [&](const FitChange& change) {
+    return !(change.times() <= options.fail_above);
+  });
+  const bool fails = options.fail_above > 0.0 && (is_worse || !fresh.off_robot.empty());
   return fails ? kNotUsable : kDone;
 }
 

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "input.hpp"
@@ -17,17 +19,21 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/files/cameras/camera_info.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
+#include "kinecal/procedure/surface_rounds.hpp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/text/reading.hpp"
+#include "kinecal/trust/noise/noise.hpp"
 
 namespace kinecal::cli {
 namespace {
 
+constexpr std::size_t kWorst = 3;  ///< samples that are listed
+
 /// The configuration with all that may have moved in its last step: the offset of each joint that moves,
 /// the frame of each fixed one.
-Config with_possible_movers(const StoredResult& result) {
-  Config config = result.config;
+Config with_possible_movers(Config config, const Robot& robot) {
   StepConfig& step = config.steps.back();
-  for (const Joint* joint : detail::joints_between(config, result.robot)) {
+  for (const Joint* joint : detail::joints_between(config, robot)) {
     if (joint->mimic) continue;                        // the joint that it follows is there as well
     if (joint->type == JointType::floating) continue;  // its pose is measured
     if (moves(joint->type)) {
@@ -44,16 +50,37 @@ Config with_possible_movers(const StoredResult& result) {
   return config;
 }
 
-void doubt(const StoredResult& result, std::span<const Sample> samples,
-           const std::vector<detail::UsedJoint>& joints, Diagnostics& diagnostics) {
+void doubt(const Config& config, const Robot& robot, std::span<const Sample> samples,
+           Diagnostics& diagnostics) {
+  const std::vector<detail::UsedJoint> joints = detail::used_joints(config, robot, samples);
   detail::check_joint_positions(joints, samples, diagnostics);
-  (void)detail::check_repeated_samples(result.config, joints, samples, diagnostics);
-  detail::check_sensor_points(result.config, result.robot, samples, diagnostics);
+  (void)detail::check_repeated_samples(config, joints, samples, diagnostics);
+  detail::check_sensor_points(config, robot, samples, diagnostics);
 }
 
-void assemble_new(const StoredResult& result, NewSamples& fresh) {
+/// Associates clouds and masks with the surface of the robot where the result puts it.
+/// @param config  gets the links of the surface
+void associate_new(const StoredResult& result, const NewSampleOptions& options, Config& config,
+                   NewSamples& fresh) {
+  fresh.assumed = take_off_if_after(result, options, fresh.samples);
+  const SurfaceInput input{result.robot, result.urdf_text, urdf_beside_meshes(result),
+                           options.mesh_paths};
+  Diagnostics& found = fresh.diagnostics;
+  const std::size_t before = found.doubts.size();
+  const std::vector<std::vector<SurfaceBlock>> blocks = read_surface_blocks(input, config, found);
+  if (!found.errors.empty()) return;
+  match_surface_at(input, blocks, result.values, config, fresh.samples, found);
+  if (!are_whole(blocks))
+    return;  // points of links that are not listed may be near the listed ones
+  const auto first = found.doubts.begin() + static_cast<std::ptrdiff_t>(before);
+  fresh.off_robot.assign(first, found.doubts.end());
+  found.doubts.erase(first, found.doubts.end());
+}
+
+void assemble_new(const StoredResult& result, const Config& config, NewSamples& fresh) {
   Diagnostics quiet;  // what a configuration leaves free is not of interest here
-  fresh.calibration = assemble(with_possible_movers(result), result.robot, fresh.samples, quiet);
+  fresh.calibration =
+      assemble(with_possible_movers(config, result.robot), result.robot, fresh.samples, quiet);
   fresh.diagnostics.errors.insert(fresh.diagnostics.errors.end(), quiet.errors.begin(),
                                   quiet.errors.end());
   if (!fresh.diagnostics.errors.empty()) return;
@@ -116,7 +143,7 @@ void choose_recorded(const StoredResult& result, const NewSampleOptions& options
   NewSamples with;
   with.samples = fresh.samples;
   if (!take_off(result, fresh.problem(), with.samples)) return;
-  assemble_new(result, with);
+  assemble_new(result, result.config, with);
   if (!with.diagnostics.errors.empty()) return;
   bool after = false;
   if (options.recorded) {
@@ -146,6 +173,22 @@ void choose_recorded(const StoredResult& result, const NewSampleOptions& options
   double sum = 0.0;
   for (const double d : distances) sum += d * d;
   return distances.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(distances.size()));
+}
+
+/// Noise of a coordinate of new samples.  Background near a robot counts as its surface does, so there it is that of the
+/// median.
+[[nodiscard]] double noise_now(const Term& term, const std::vector<double>& distances) {
+  return term.is_of_surface()
+             ? robust_sigma(distances, term.feature_size)
+             : root_mean_square(distances) / std::sqrt(static_cast<double>(term.feature_size));
+}
+
+/// The same of the calibration; zero if it is not known.
+[[nodiscard]] double noise_then(const StoredResult& result, const Term& term) {
+  for (const BlockNoise& noise : result.noise) {
+    if (noise.block == term.name) return term.is_of_surface() ? noise.robust : noise.sigma;
+  }
+  return 0.0;
 }
 
 const FittedBlock& fitted_block(const StoredResult& result, const std::string& name) {
@@ -178,6 +221,23 @@ bool take_off(const StoredResult& result, const AnyProblem& problem, std::vector
   return changes;
 }
 
+std::string urdf_beside_meshes(const StoredResult& result) {
+  return std::filesystem::exists(result.urdf_then) ? result.urdf_then : result.urdf;
+}
+
+std::string take_off_if_after(const StoredResult& result, const NewSampleOptions& options,
+                              std::vector<Sample>& samples) {
+  Diagnostics ignored;  // calibrate said it
+  const Calibration without = assemble(result.config, result.robot, {}, ignored);
+  if (without.steps.empty()) return "";
+  std::vector<Sample> taken_off = samples;
+  if (!take_off(result, *without.steps.back().problem, taken_off)) return "";
+  if (options.recorded == Recorded::after) samples = std::move(taken_off);
+  return options.recorded ? ""
+                          : "taken as recorded before the result was installed; if not, give "
+                            "--samples-recorded after";
+}
+
 std::vector<Sample> read_new_recordings(const NewSampleOptions& options, Diagnostics& diagnostics) {
   std::vector<Sample> samples = read_recordings(options.samples, diagnostics).samples;
   for (const std::string& camera : options.cameras) {
@@ -204,10 +264,13 @@ NewSamples read_new_samples(const StoredResult& result, const NewSampleOptions& 
   NewSamples fresh;
   fresh.samples = read_new_recordings(options, fresh.diagnostics);
   if (!fresh.diagnostics.errors.empty()) return fresh;
-  doubt(result, fresh.samples, detail::used_joints(result.config, result.robot, fresh.samples),
-        fresh.diagnostics);
+  Config config = result.config;
+  const bool is_of_surface = compares_surface(config);
+  if (is_of_surface) associate_new(result, options, config, fresh);
   if (!fresh.diagnostics.errors.empty()) return fresh;
-  assemble_new(result, fresh);
+  doubt(config, result.robot, fresh.samples, fresh.diagnostics);
+  if (!fresh.diagnostics.errors.empty()) return fresh;
+  assemble_new(result, config, fresh);
   if (!fresh.diagnostics.errors.empty()) {
     fresh.diagnostics.errors.push_back(
         fmt::format("these samples do not fit robot '{}' and the configuration of {}; are they of "
@@ -215,7 +278,7 @@ NewSamples read_new_samples(const StoredResult& result, const NewSampleOptions& 
                     result.robot.name(), result.folder));
     return fresh;
   }
-  choose_recorded(result, options, fresh);
+  if (!is_of_surface) choose_recorded(result, options, fresh);
   return fresh;
 }
 
@@ -275,14 +338,10 @@ std::string fit_text(const StoredResult& result, const NewSamples& fresh) {
     const auto text = [&](double value) { return in_reading_unit(value, unit); };
     const FittedBlock& then = fitted_block(result, term.name);
     const double now = root_mean_square(distances);
-    double sigma = 0.0;
-    for (const BlockNoise& noise : result.noise) {
-      if (noise.block == term.name) sigma = noise.sigma;
-    }
     table.add({term.name, fmt::format("{}", distances.size()), reading_unit(unit), text(now),
                text(then.distance), then.held_out ? text(*then.held_out) : "-",
                text(*std::max_element(distances.begin(), distances.end())),
-               text(now / std::sqrt(static_cast<double>(term.feature_size))), text(sigma)});
+               text(noise_now(term, distances)), text(noise_then(result, term))});
   }
   return "Fit: distances of features, root of the mean square; noise of a coordinate\n" +
          table.str();
@@ -295,9 +354,14 @@ std::vector<FitChange> fit_changes(const StoredResult& result, const NewSamples&
   for (int t = 0; t < problem.num_terms(); ++t) {
     const auto& distances = norms[static_cast<std::size_t>(t)];
     if (distances.empty()) continue;
-    const FittedBlock& then = fitted_block(result, problem.term(t).name);
-    changes.push_back({problem.term(t).name, problem.term(t).options.unit,
-                       then.held_out.value_or(then.distance), root_mean_square(distances)});
+    const Term& term = problem.term(t);
+    const FittedBlock& then = fitted_block(result, term.name);
+    changes.push_back(term.is_of_surface()
+                          ? FitChange{term.name, term.options.unit, noise_then(result, term),
+                                      noise_now(term, distances)}
+                          : FitChange{term.name, term.options.unit,
+                                      then.held_out.value_or(then.distance),
+                                      root_mean_square(distances)});
   }
   return changes;
 }
@@ -322,12 +386,46 @@ detail::Json fit_json(const StoredResult& result, const NewSamples& fresh) {
   return list;
 }
 
+namespace {
+
+/// Of a cloud or mask some features are always far off, so it is judged as a whole: by the noise of the median.
+[[nodiscard]] std::string worst_clouds_text(const StoredResult& result, const NewSamples& fresh) {
+  const AnyProblem& problem = fresh.problem();
+  std::map<std::pair<int, int>, std::vector<double>> distances;  // by sample and error block
+  (void)evaluate(problem, fresh.values, nullptr, [&](int t, int sample, const TermResiduals& rows) {
+    const int size = problem.term(t).feature_size;
+    std::vector<double>& of_sample = distances[{sample, t}];
+    for (Eigen::Index row = 0; row < rows.residual.size(); row += size) {
+      of_sample.push_back(rows.residual.segment(row, size).norm());
+    }
+  });
+  std::vector<std::pair<double, std::string>> all;  // times, text
+  for (const auto& [of, norms] : distances) {
+    const Term& term = problem.term(of.second);
+    const double now = noise_now(term, norms), then = noise_then(result, term);
+    if (!(then > 0.0)) continue;
+    all.emplace_back(
+        now / then,
+        fmt::format("  {} (sample {}): error block '{}': noise {}, {:.2g} times that of the "
+                    "calibration\n",
+                    fresh.samples[static_cast<std::size_t>(of.first)].source, of.first + 1,
+                    term.name, reading(now, term.options.unit), now / then));
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kWorst, all.size()); ++i) text += all[i].second;
+  return "Worst samples\n" + text;
+}
+
+}  // namespace
+
 std::string worst_text(const StoredResult& result, const NewSamples& fresh) {
+  if (compares_surface(result.config)) return worst_clouds_text(result, fresh);
   const Assessment found = assess_new(result, fresh);
   std::vector<CaptureError> worst = found.captures;
   std::stable_sort(worst.begin(), worst.end(),
                    [](const auto& a, const auto& b) { return a.times > b.times; });
-  constexpr std::size_t kWorst = 3;
   std::string text;
   for (std::size_t i = 0; i < std::min(kWorst, worst.size()); ++i) {
     const int sample = worst[i].sample;

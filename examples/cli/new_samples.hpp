@@ -18,8 +18,10 @@ struct NewSamples {
   std::vector<Sample> samples;
   Calibration calibration;     ///< of the result's configuration, with all that may have moved
   std::vector<double> values;  ///< of the result
-  double misfit = 0.0;      ///< mean square of all residuals, in standard deviations of the noise
-  std::string assumed;      ///< which URDF was in force, if that matters; a sentence
+  double misfit = 0.0;  ///< mean square of all residuals, in standard deviations of the noise
+  std::string assumed;  ///< which URDF was in force, if that matters; a sentence
+  /// Blocks of the robot's own surface whose points do not lie on it where the result puts it: sentences.
+  std::vector<std::string> off_robot;
   Diagnostics diagnostics;  ///< errors: nothing else is filled in
 
   /// The last step: the one that a result is held against.
@@ -32,13 +34,23 @@ struct NewSampleOptions {
   /// before, after: without or with calibrated.urdf and the calibrated cameras in force; nullopt: what
   /// explains the samples better.
   std::optional<Recorded> recorded = {};
-  double level = 0.01;  ///< share of false alarms
+  double level = 0.01;                       ///< share of false alarms
+  std::vector<std::string> mesh_paths = {};  ///< where the URDF's packages may be
 };
+
+/// The file beside which a result's meshes are: the URDF that was calibrated, or the copy if it is gone.
+[[nodiscard]] std::string urdf_beside_meshes(const StoredResult& result);
 
 /// Takes the result off what was recorded with it in force: offsets in <calibration rising>, and cameras.
 /// @param problem  has the sensors
 /// @returns  false if it changes nothing
 bool take_off(const StoredResult& result, const AnyProblem& problem, std::vector<Sample>& samples);
+
+/// The same if options say so, for results of the robot's own surface: nearest points fit before and after.
+/// @returns  a sentence if it matters and options do not say it; else empty
+[[nodiscard]] std::string take_off_if_after(const StoredResult& result,
+                                            const NewSampleOptions& options,
+                                            std::vector<Sample>& samples);
 
 /// Reads new samples of any format; an error if there are none.
 [[nodiscard]] std::vector<Sample> read_new_recordings(const NewSampleOptions& options,
@@ -58,7 +70,8 @@ bool take_off(const StoredResult& result, const AnyProblem& problem, std::vector
 /// Distances of an error block: of samples that the calibration had not seen, and of new ones.
 struct FitChange {
   std::string block, unit;
-  double then = 0.0, now = 0.0;  ///< root of the mean square, in `unit`
+  /// Root of the mean square, in `unit`; of the robot's surface the noise from the median, as background counts, too.
+  double then = 0.0, now = 0.0;
 
   [[nodiscard]] double times() const { return then > 0.0 ? now / then : 1.0; }
 };

@@ -8,9 +8,11 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <set>
 
 #include "kinecal/files/urdf/velocity_limits.hpp"
+#include "kinecal/procedure/surface_views.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/trust/verify/pose_change.hpp"
 #include "terminal.hpp"
@@ -93,6 +95,21 @@ void add_information(std::size_t candidates, PoseChoice& choice) {
   choice.determined = expected_uncertainty(design, all).determined;
 }
 
+/// Points of a cloud err together, with the depth and with the meshes: scales what noise is expected to do, so that all samples
+/// together give the uncertainty that their calibration has.
+/// @param calibrated  standard deviation of the judged pose, metres
+void scale_scores(double calibrated, PoseChoice& choice) {
+  std::vector<int> all(choice.design.samples.size());
+  std::iota(all.begin(), all.end(), 0);
+  const double expected =
+      expected_variance(expected_uncertainty(choice.design, all), choice.candidates.goal);
+  if (!(expected > 0.0)) return;
+  const double factor = calibrated * calibrated / expected;
+  for (SampleDesign& sample : choice.design.samples) {
+    sample.scores = factor * sample.scores.matrix();
+  }
+}
+
 }  // namespace
 
 void drop_poses_of_have(StudyInput& input, double least_distance) {
@@ -135,6 +152,7 @@ PoseChoice pose_choice(const StudyInput& input) {
   choice.design = study_design(setup.make, free, setup.drawn, choice.samples, setup.noise);
   choice.candidates.goal =
       position_goal(problem, free, setup.drawn, choice.samples, setup.frame, setup.in);
+  if (input.calibrated) scale_scores(*input.calibrated, choice);
   const std::size_t candidates = choice.samples.size() - input.have;
   add_information(candidates, choice);
   choice.joints = moved_joints(input);
@@ -179,6 +197,16 @@ std::string millimetres(double metres) {
       fmt::format("{:.{}f}", shown, 1 - static_cast<int>(std::floor(std::log10(shown))));
   if (text.back() == '0') text.pop_back();
   return text + " mm";
+}
+
+std::string surface_text(const StudyInput& input) {
+  if (input.calibrated) {
+    return "  scaled to what the calibration of all samples says\n";
+  }
+  return fmt::format(
+      "  if {} points or edges a pose err independently; those of a real camera and mesh err "
+      "together: it will be larger, as --samples of such poses would say\n",
+      kViewPoints);
 }
 
 double random_position(const PoseChoice& choice, int count, const ProgressMeter& meter) {

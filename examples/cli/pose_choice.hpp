@@ -46,6 +46,9 @@ void drop_poses_of_have(StudyInput& input, double least_distance);
 /// "0.497 mm", "not determined".
 [[nodiscard]] std::string millimetres(double metres);
 
+/// What the uncertainty is of, if the robot is its own target: a sentence.
+[[nodiscard]] std::string surface_text(const StudyInput& input);
+
 /// Median of expected_position() of random sets, metres.
 /// @param meter  called now and then
 [[nodiscard]] double random_position(const PoseChoice& choice, int count,

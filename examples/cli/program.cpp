@@ -493,10 +493,14 @@ void add_study_files(CLI::App& command, StudyFiles& files) {
                       "camera, target, errors and noise in YAML, as of `kinecal simulate`")
           ->type_name("FILE");
   command
-      .add_option("--target", files.target, "checkerboard (default), apriltag, aprilgrid or leds")
+      .add_option(
+          "--target", files.target,
+          "checkerboard, apriltag, aprilgrid, leds, or robot: its own meshes; default: robot "
+          "if the configuration compares them, else checkerboard")
       ->excludes(scene)
       ->excludes(samples)
-      ->check(one_word_of({"checkerboard", "apriltag", "aprilgrid", "leds"}));
+      ->check(one_word_of({"checkerboard", "apriltag", "aprilgrid", "leds", "robot"}));
+  add_mesh_path(command, files.mesh_paths);
   command.add_option("--seed", files.seed, "random seed (default 1) of robots and noise")
       ->check(CLI::Range(1, 1000000000))
       ->type_name("N");
@@ -782,6 +786,7 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
       ->capture_default_str();
   command.add_flag("--resume", options.resume,
                    "continue an interrupted session: record the poses that the output lacks");
+  add_mesh_path(command, options.mesh_paths);
   CLI::Option* calibrate =
       command
           .add_option(
@@ -927,6 +932,7 @@ void add_recheck(CLI::App& command, RecheckOptions& options) {
           "what fits better")
       ->check(one_word_of({"after", "before"}));
   command.add_option("--report", options.report, "write what is found as JSON")->type_name("FILE");
+  add_mesh_path(command, options.mesh_paths);
   add_manner(command, options.manner);
 }
 
@@ -943,7 +949,6 @@ void add_evaluate(CLI::App& command, RecheckOptions& options) {
 
 void add_verify(CLI::App& command, RecheckOptions& options) {
   add_recheck(command, options);
-  add_mesh_path(command, options.mesh_paths);
   command
       .add_option("--level", options.level,
                   "false alarm rate: how often a valid result may be rejected")

@@ -82,6 +82,10 @@ std::string selected_text(const StudyInput& input, const PoseChoice& choice,
   if (!std::isfinite(selected)) {
     return what + " is not determined: they determine less than all poses do; choose more\n";
   }
+  if (input.is_of_surface) {
+    return what + " will be known to " + millimetres(selected) + " (one standard deviation)\n" +
+           surface_text(input);
+  }
   const double tolerated = tolerated_error(selected, selected);
   const RemainingError remaining =
       remaining_error(input, with_existing(choice, chosen), tolerated, meter);
@@ -114,7 +118,8 @@ std::string comparison_text(const SelectPosesOptions& options, const StudyInput&
               ? "  random sets are never as good\n"
               : fmt::format("  random sets need {} for as much (median)\n",
                             counted(static_cast<std::size_t>(equal), "pose"));
-  if (options.trials < 2 || !choice.have.empty()) return text;  // of the new ones alone
+  // Of the new ones alone; a calibration of the robot's surface would have to associate.
+  if (options.trials < 2 || !choice.have.empty() || input.is_of_surface) return text;
   const auto of = [&](const std::vector<int>& set) {
     return simulated_text(simulated(input, choice, set, options.trials, meter));
   };

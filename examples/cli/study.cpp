@@ -279,6 +279,13 @@ int study_in(const Processes& processes, const StudyOptions& options) {
     const int most =
         options.poses.empty() ? 100 : *std::max_element(options.poses.begin(), options.poses.end());
     input = read_study(options, most);
+    if (input->is_of_surface) {
+      throw InputError(
+          "a study does not associate clouds and masks with the robot's surface, so it would be "
+          "too "
+          "good; simulate such robots with 'kinecal simulate --target robot --seed N', and "
+          "calibrate each");
+    }
     if (options.ruined >= 0.0) input->setup.ruined = options.ruined;
     input->setup.free_targets = options.free_targets;
     input->keep_ruined = !(input->setup.ruined > 0.0);

@@ -13,6 +13,9 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
+#include "kinecal/procedure/surface_rounds.hpp"
+#include "kinecal/procedure/surface_views.hpp"
 #include "kinecal/study/seeded_random.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/tools/identify/tell_apart.hpp"
@@ -38,9 +41,47 @@ bool is_used(const Calibration& calibration, const Sample& sample) {
   });
 }
 
+/// Takes recorded clouds or masks of the robot: it is calibrated as `kinecal calibrate` does, and what lies on it then is what
+/// its samples show.
+/// @returns  the result
+ParameterTable take_recorded_surface(const StudyFiles& files, StudyInput& input) {
+  Diagnostics found;
+  CalibrationSetup setup{.robot = input.robot,
+                         .config = input.config,
+                         .samples = read_recordings(files.samples, found).samples,
+                         .urdf_text = input.urdf_text,
+                         .urdf = files.urdf};
+  CalibrationOptions options;
+  options.mesh_paths = files.mesh_paths;
+  options.search = Search::never;
+  PreparedCalibration prepared = prepare(std::move(setup), options, std::move(found));
+  print_or_throw(prepared.diagnostics);
+  const CalibratedRobot calibrated = calibrate_robot(std::move(prepared), options);
+  if (!calibrated.is_usable() || !calibrated.assessments.back().pose) {
+    throw InputError("the samples cannot be calibrated: " +
+                     (calibrated.judgement.reasons.empty() ? "no pose is compared"
+                                                           : calibrated.judgement.reasons.front()) +
+                     "; a selection starts from their result");
+  }
+  input.config = *calibrated.setup.config;
+  input.calibrated = calibrated.assessments.back().pose->position;
+  std::vector<std::string> blocks;
+  for (const BlockConfig& block : input.config.steps.back().error_blocks) {
+    if (block.surface) blocks.push_back(block.name);
+  }
+  const Eigen::VectorXd values = calibrated.result.table.values();
+  input.samples = surface_points(*calibrated.setup.calibration.steps.back().problem,
+                                 {values.data(), static_cast<std::size_t>(values.size())}, blocks,
+                                 calibrated.samples);
+  for (const Sample& sample : input.samples) {
+    input.poses.push_back({sample.joint_names, sample.joint_positions, {}, sample.source});
+  }
+  return calibrated.result.table;
+}
+
 /// Takes recorded samples and their poses, but those that no error block uses.
-/// @returns  the calibration of these samples
-Calibration take_recorded(const StudyFiles& files, StudyInput& input) {
+/// @returns  the result of these samples
+ParameterTable take_recorded(const StudyFiles& files, StudyInput& input) {
   Diagnostics of_files, of_samples;
   input.samples = read_recordings(files.samples, of_files).samples;
   print_or_throw(of_files);
@@ -55,7 +96,12 @@ Calibration take_recorded(const StudyFiles& files, StudyInput& input) {
   for (const Sample& sample : input.samples) {
     input.poses.push_back({sample.joint_names, sample.joint_positions, {}, sample.source});
   }
-  return calibration;
+  CalibrationResult found = kinecal::calibrate(calibration);
+  if (!found.converged) {
+    throw InputError("the samples cannot be calibrated: " + found.termination +
+                     "; a study starts from their result");
+  }
+  return std::move(found.table);
 }
 
 /// The poses of a file, each with a name for messages.
@@ -81,6 +127,10 @@ std::vector<CapturePose> poses_for(const StudyFiles& files, int count, StudyInpu
   return poses;
 }
 
+[[nodiscard]] SurfaceInput surface_input(const StudyFiles& files, const StudyInput& input) {
+  return {input.robot, input.urdf_text, files.urdf, files.mesh_paths};
+}
+
 /// Takes poses without samples, in which a simulated target is seen.
 /// @returns  values by which the robot differs from the configuration
 ParameterTable take_poses(const StudyFiles& files, int count, StudyInput& input) {
@@ -90,7 +140,15 @@ ParameterTable take_poses(const StudyFiles& files, int count, StudyInput& input)
     const std::vector<CapturePose> have = named_poses(files.have);
     poses.insert(poses.end(), have.begin(), have.end());
   }
-  PoseSamples made = pose_samples(input.plan, input.config, poses);
+  PoseSamples made;
+  if (input.is_of_surface) {
+    Diagnostics found;
+    made = surface_views(surface_input(files, input), input.plan.setup.camera, input.config, poses,
+                         found);
+    print_or_throw(found);
+  } else {
+    made = pose_samples(input.plan, input.config, poses);
+  }
   constexpr std::size_t kShown = 3;
   for (std::size_t i = 0; i < made.skipped.size() && i < kShown; ++i) {
     say(stderr, "warning: {}{}\n", made.skipped[i],
@@ -153,16 +211,11 @@ void free_both(const StudyFiles& files, int poses, StudyInput& input) {
 }
 
 /// The values of a robot without errors: of the configuration; or what recorded samples show.
-/// @param recorded  by the configuration that was given; nullptr: there are no recorded samples
-void set_drawn(const ParameterTable& places, const Calibration* recorded, StudyInput& input) {
+/// @param recorded  the result by the configuration that was given; nullptr: there are no recorded samples
+void set_drawn(const ParameterTable& places, const ParameterTable* recorded, StudyInput& input) {
   ParameterTable table = input.calibration.table;
   if (recorded != nullptr) {
-    const CalibrationResult found = kinecal::calibrate(*recorded);
-    if (!found.converged) {
-      throw InputError("the samples cannot be calibrated: " + found.termination +
-                       "; a study starts from their result");
-    }
-    for (const Parameter& parameter : found.table) {
+    for (const Parameter& parameter : *recorded) {
       if (const int p = table.find(parameter.name); p >= 0) table[p].value = parameter.value;
     }
   }
@@ -245,10 +298,23 @@ std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
   print_or_throw(diagnostics);
   const bool has_config = !files.config.empty();
   Diagnostics of_scene;
+  input->is_of_surface = compares_surface(input->config);
+  if (input->is_of_surface && !files.target.empty() && files.target != "robot") {
+    throw InputError("--target " + files.target + ": " + files.config +
+                     " compares the robot with its own surface, so its target is robot");
+  }
   if (files.samples.empty() || !files.scene.empty()) {
-    input->plan = read_simulation(input->robot, files.scene, files.target,
+    const bool is_default = files.target.empty() && files.scene.empty();
+    const auto surface = [&] {
+      const SurfaceSource source{.urdf = files.urdf,
+                                 .places = mesh_places(files.urdf, files.mesh_paths),
+                                 .place = {files.scene.empty() ? "--target" : files.scene, 0}};
+      return read_surface(input->urdf_text, source, of_scene);
+    };
+    input->plan = read_simulation(input->robot, files.scene,
+                                  input->is_of_surface && is_default ? "robot" : files.target,
                                   static_cast<std::uint64_t>(files.seed), of_scene,
-                                  has_config ? &input->config : nullptr);
+                                  has_config ? &input->config : nullptr, surface);
   }
   if (!has_config && !files.samples.empty()) {
     of_scene.error({"--config", 0}, "is required with samples");
@@ -257,17 +323,31 @@ std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
     of_scene.error({files.config, 0}, "has no steps");
   }
   print_or_throw(of_scene);
+  const bool sees_robot = input->plan.target.type == "robot";
+  if (files.samples.empty() && has_config && sees_robot != input->is_of_surface) {
+    throw InputError(files.config +
+                     (sees_robot ? ": does not compare the surface of the robot"
+                                 : ": compares the robot with its own surface") +
+                     "; choose target robot where the configuration compares it, else another one");
+  }
+  input->is_of_surface = input->is_of_surface || (!has_config && sees_robot);
+  if (input->is_of_surface && !files.tell_apart.empty()) {
+    throw InputError(
+        "--tell-apart: what clouds and masks of the robot would show of two explanations is not "
+        "predicted; calibrate with each (--hold), and compare the errors on held-out samples");
+  }
   if (!has_config) {
     Diagnostics of_first;
     input->config = parse_config(input->plan.config, "first configuration", of_first);
     print_or_throw(of_first);
   }
   ParameterTable places;
-  std::optional<Calibration> recorded;
+  std::optional<ParameterTable> recorded;
   if (files.samples.empty()) {
     places = take_poses(files, poses, *input);
   } else {
-    recorded.emplace(take_recorded(files, *input));
+    recorded =
+        input->is_of_surface ? take_recorded_surface(files, *input) : take_recorded(files, *input);
   }
   if (!files.tell_apart.empty()) free_both(files, poses, *input);
   Diagnostics of_samples;

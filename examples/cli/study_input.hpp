@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -30,7 +31,12 @@ struct StudyInput {
   StudySetup setup;                                        ///< without truth and noise of a job
   std::vector<std::pair<std::string, std::string>> files;  ///< that were read: role and name
   ShellCommand command;                                    ///< as the user typed it
-  std::size_t have = 0;     ///< the last samples, which exist already
+  std::size_t have = 0;  ///< the last samples, which exist already
+  /// It compares the robot with its own surface: what is seen of it belongs together already, so calibrations of it are not
+  /// simulated.
+  bool is_of_surface = false;
+  /// Standard deviation of the judged pose, metres, by the calibration of recorded clouds or masks; nullopt: of others.
+  std::optional<double> calibrated = {};
   bool keep_ruined = true;  ///< calibrate with all samples
   /// Values of all parameters by the configuration: those of its simulated target can differ.
   std::vector<double> configured;

@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/config/assemble.hpp"
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/procedure/calibrate_robot.hpp"
@@ -343,21 +341,15 @@ struct SecondSolution {
 std::optional<CalibratedRobot> calibrated_alone(const StoredResult& result,
                                                 const RecheckOptions& options) {
   Diagnostics found;
+  const NewSampleOptions of_new{options.samples, options.cameras, options.recorded};
   CalibrationSetup setup{.robot = result.robot,
                          .config = result.config,
-                         .samples = read_new_recordings({options.samples, options.cameras}, found),
+                         .samples = read_new_recordings(of_new, found),
                          .urdf_text = result.urdf_text,
-                         .urdf = result.urdf_then};
-  if (!std::filesystem::exists(setup.urdf)) setup.urdf = result.urdf;
-  Diagnostics ignored;  // calibrate said it
-  const Calibration without = assemble(result.config, result.robot, {}, ignored);
-  std::vector<Sample> taken_off = setup.samples;
-  const bool matters = found.errors.empty() && !without.steps.empty() &&
-                       take_off(result, *without.steps.back().problem, taken_off);
-  if (matters && options.recorded == Recorded::after) setup.samples = std::move(taken_off);
-  if (matters && !options.recorded) {
-    found.notes.push_back(
-        "taken as recorded before the result was installed; if not, give --samples-recorded after");
+                         .urdf = urdf_beside_meshes(result)};
+  if (found.errors.empty()) {
+    const std::string assumed = take_off_if_after(result, of_new, setup.samples);
+    if (!assumed.empty()) found.notes.push_back(assumed);
   }
   CalibrationOptions calibrating;
   calibrating.mesh_paths = options.mesh_paths;

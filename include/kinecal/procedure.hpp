@@ -14,3 +14,4 @@
 #include "kinecal/procedure/session_follower.hpp"
 #include "kinecal/procedure/surface_blocks.hpp"
 #include "kinecal/procedure/surface_rounds.hpp"
+#include "kinecal/procedure/surface_views.hpp"

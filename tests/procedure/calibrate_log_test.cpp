@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "support/arm_scene.hpp"
+#include "support/mesh_robot_test.hpp"
 #include "support/thrown.hpp"
 
 namespace kinecal {
@@ -142,6 +143,66 @@ TEST(CalibrateLog, NamesTheSampleOfAFileThatIsWrong) {
                 (void)log.calibrate({0, 1, 2}, 60);
               }),
               HasSubstr("x.yaml:391"));
+}
+
+/// Logs of an arm that is its own target, in three files.
+class LogOfASurface : public test::MeshRobotTest {
+ protected:
+  CalibratedRobot calibrate(int draw) {
+    RecordedLog log{.names = {"a", "b", "c"}};
+    log.read = [this](int file) {
+      const auto at = [&](int part) { return samples_.begin() + std::ssize(samples_) * part / 3; };
+      return std::vector<Sample>(at(file), at(file + 1));
+    };
+    CalibrationOptions options;
+    options.draw = draw;
+    return calibrate_log(prepare_log(setup_of(config_), log, options), options);
+  }
+  CalibratedRobot at_once() {
+    CalibrationSetup all = setup_of(config_);
+    all.samples = samples_;
+    return calibrate_robot(std::move(all));
+  }
+  void expect_alike(const CalibratedRobot& log, const CalibratedRobot& once) {
+    ASSERT_FALSE(once.result.calibrated.empty());
+    for (const int p : once.result.calibrated) {
+      EXPECT_NEAR(log.result.table[p].value, once.result.table[p].value, 0.1 * *once.deviation(p))
+          << once.result.table[p].name;
+    }
+  }
+
+  std::string config_ = test::mesh_config("", "", "lift, elbow");  // nor is a start known
+  std::vector<Sample> samples_ = test::mesh_robot_samples(
+      parse_urdf(urdf_, "arm.urdf"),
+      {.samples = 24, .pixels = 40, .noise = 0.001, .offsets = {{"lift", 0.02}, {"elbow", -0.03}}});
+};
+
+TEST_F(LogOfASurface, IsAssociatedAsACalibrationIs) {
+  const CalibratedRobot once = at_once(), whole = calibrate(3000), drawn = calibrate(9);
+  EXPECT_EQ(whole.drawn, 0);
+  EXPECT_EQ(drawn.drawn, 9);
+  EXPECT_EQ(drawn.result.steps.back().samples, 24);
+  expect_alike(whole, once);
+  expect_alike(drawn, once);
+  EXPECT_NEAR(drawn.result.table["lift"].value, 0.02, 1e-3);
+  EXPECT_NEAR(drawn.result.table["elbow"].value, -0.03, 1e-3);
+}
+
+/// Sample 15 is in the second file, and not drawn.
+TEST_F(LogOfASurface, LeavesOutACloudThatTheDrawDidNotSee) {
+  for (Feature& point : samples_[14].observations[0].features) point.point.x() += 0.03;
+  const CalibratedRobot drawn = calibrate(8);
+  ASSERT_EQ(std::ranges::count(drawn.numbers, 15), 0);
+  ASSERT_EQ(drawn.left_out.size(), 1U);
+  EXPECT_EQ(drawn.left_out[0].number, 15);
+  EXPECT_NEAR(drawn.result.table["lift"].value, 0.02, 1e-3);
+}
+
+TEST_F(LogOfASurface, NamesAFileOfSomethingElse) {
+  for (std::size_t s = 8; s < 16; ++s) {
+    for (Feature& point : samples_[s].observations[0].features) point.point.x() += 0.4;
+  }
+  EXPECT_THAT(test::thrown<InputError>([&] { (void)calibrate(6); }), HasSubstr("the robot"));
 }
 
 }  // namespace

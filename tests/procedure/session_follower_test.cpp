@@ -10,7 +10,9 @@
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/procedure/session_end.hpp"
 #include "support/data.hpp"
+#include "support/mesh_robot_test.hpp"
 #include "support/thrown.hpp"
 
 namespace kinecal::test {
@@ -108,6 +110,55 @@ TEST(Accuracy, IsReachedByAKnownPoseOnly) {
   EXPECT_TRUE(millimetre.reached(state));
   state.position = 2e-3;
   EXPECT_FALSE(millimetre.reached(state));
+}
+
+/// Sessions of an arm that is its own target.
+class SessionOfASurface : public MeshRobotTest {
+ protected:
+  SessionFollower follower(const std::string& config) {
+    CalibrationSetup setup = setup_of(config);
+    return SessionFollower(std::move(*setup.config), setup.robot, "", setup.urdf_text, setup.urdf);
+  }
+  std::vector<Sample> clouds(const CloudPlan& plan) {
+    return mesh_robot_samples(parse_urdf(urdf_, "arm.urdf"), plan);
+  }
+};
+
+TEST_F(SessionOfASurface, IsJudgedAsItsCalibration) {
+  SessionFollower session = follower(mesh_config(""));  // the camera's pose is searched for
+  FollowedState state;
+  const std::vector<Sample> samples = clouds({.samples = 6, .noise = 0.001});
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    state = session.add(samples[i]);
+    EXPECT_EQ(state.problem, "") << "sample " << i + 1;
+    EXPECT_EQ(state.online.known, i >= 2) << "sample " << i + 1;
+    EXPECT_TRUE(state.online.fits);
+  }
+  EXPECT_EQ(session.frames(), std::pair(std::string("base"), std::string("camera")));
+  const CalibratedRobot all = session.calibrate_all();
+  ASSERT_TRUE(all.is_usable());
+  EXPECT_LT(distance_of(camera_in(all.result.table), true_camera()), 1e-3);
+  const PoseUncertainty& pose = all.assessments.back().pose.value();
+  EXPECT_NEAR(state.online.position, pose.position, 1e-3 * pose.position);
+  EXPECT_NEAR(state.online.rotation, pose.rotation, 1e-3 * pose.rotation);
+  const Accuracy loose{.frame = "", .position = 3.0 * pose.position, .rotation = {}},
+      tight{.frame = "", .position = 0.3 * pose.position, .rotation = {}};
+  EXPECT_EQ(why_go_on(loose, session, {}), "");
+  EXPECT_THAT(why_go_on(tight, session, {}), HasSubstr("'base' in 'camera' is known to "));
+}
+
+TEST_F(SessionOfASurface, NamesACloudOfSomethingElse) {
+  SessionFollower session = follower(mesh_config(kStart));
+  const std::vector<Sample> samples = clouds({.samples = 5, .noise = 0.001});
+  for (std::size_t i = 0; i < 4; ++i) (void)session.add(samples[i]);
+  Sample other = samples[4];  // the camera was knocked before it
+  for (Feature& point : other.observations[0].features) point.point.x() += 0.04;
+  const FollowedState state = session.add(other);
+  EXPECT_FALSE(state.online.fits && state.problem.empty());
+  const FollowedState after = session.add(samples[4]);
+  EXPECT_EQ(after.problem, "");
+  EXPECT_TRUE(after.online.fits);
+  EXPECT_TRUE(after.online.known);
 }
 
 }  // namespace

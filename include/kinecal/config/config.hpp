@@ -101,6 +101,8 @@ struct SurfaceConfig {
   std::vector<std::string> links = {};  ///< `link_name`, `links`; empty: all that have a mesh
   std::string geometry = {};            ///< visual or collision; empty: visual, if it has meshes
   int points = 5000;                    ///< of a cloud, at most; evenly from its list
+  /// Beyond it nothing counts, metres or pixels: as rounds of association found it; not in files.
+  std::optional<double> gate = {};
 };
 
 /// `error_blocks:`  a comparison, or a prior.

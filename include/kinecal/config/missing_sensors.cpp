@@ -61,7 +61,8 @@ std::string sentence_of(const MissingSensors& missing) {
   }
   if (names.empty()) {
     return "what the camera observes is not associated with the surface of the robot; 'kinecal "
-           "calibrate', 'check', 'identify' and 'verify' do that, with the meshes of the URDF";
+           "calibrate', 'check', 'identify', 'verify' and 'evaluate' do that, with the meshes of "
+           "the URDF";
   }
   std::string text = fmt::format(
       "{} {}: no sample has {}", names.size() == 1 ? "model" : "models", quoted_list(names),

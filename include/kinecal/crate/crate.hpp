@@ -167,7 +167,7 @@ class Crate {
     }
   }
 
-  /// The compiled walks to a sensor and to the virtual frames beyond it.
+  /// The compiled walks to a sensor, to the virtual frames beyond it, and to further links.
   template <class S, class Sensor>
   [[nodiscard]] static std::vector<detail::CompiledWalk<S>> walks() {
     std::vector<detail::CompiledWalk<S>> walks = {
@@ -179,6 +179,11 @@ class Crate {
               detail::compiled_walk<S, ChainWithFrames<typename Sensor::Chain, P>, Free>());
         }
       });
+    }
+    if constexpr (requires { typename Sensor::Further; }) {
+      [&]<class... Cs>(std::type_identity<std::tuple<Cs...>>) {
+        (walks.push_back(detail::compiled_walk<S, ChainWithFrames<Cs>, Free>()), ...);
+      }(std::type_identity<typename Sensor::Further>());
     }
     return walks;
   }

@@ -135,6 +135,10 @@ struct CheckCrate<TypeList<Ss...>, TypeList<Ps...>, TypeList<Bs...>, TypeList<Qs
       !C::kHasLinks || !BaseChain::kHasLinks ||
       (std::is_same_v<typename C::Robot, typename BaseChain::Robot> &&
        C::kBase == BaseChain::kBase);
+  template <class Sensor>
+  static constexpr bool kAllStartThere = all_chains<Sensor>([]<class C>(std::type_identity<C>) {
+    return kStartsThere<C>;
+  });
   template <class P>
   static constexpr bool kIsUsed = (moves_block<P, Bs>(Sensors()) || ...);
 
@@ -145,7 +149,7 @@ struct CheckCrate<TypeList<Ss...>, TypeList<Ps...>, TypeList<Bs...>, TypeList<Qs
       Unless<Blocks::names_differ(), NamesOfBlocks<Blocks>>,
       Unless<Priors::names_differ(), NamesOfPriors<Priors>>,
       Unless<Free::are_distinct(), NamesOfParameters<Free>>,
-      Unless<(kStartsThere<typename Ss::Chain> && ...), BaseOfCrate<Sensors>>,
+      Unless<(kAllStartThere<Ss> && ...), BaseOfCrate<Sensors>>,
       typename CheckBlock<typename Bs::Plain, Sensors>::type...,
       typename CheckParameter<Ps, typename BaseChain::Robot, Sensors, Blocks>::type...,
       Unless<kIsUsed<Ps>, UseOfParameter<Ps>>...,

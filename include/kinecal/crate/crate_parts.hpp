@@ -32,6 +32,24 @@ struct SensorOn {
 /// Points at known positions in the chain's tip.
 template <FixedString Name, StaticChain C>
 struct Chain3d : SensorOn<Name, C, ChainPoint> {};
+/// Points on several links, each the tip of a chain: the surface of the robot where a camera sees it, for PointToMesh and
+/// PointToOutline.
+///
+///     Surface3d<"surface", Chain<arm::Robot, "base", "upper">, Chain<arm::Robot, "base", "fore">>
+///
+/// @tparam C     to the first link
+/// @tparam More  to the others
+template <FixedString Name, StaticChain C, StaticChain... More>
+struct Surface3d : SensorOn<Name, C, ChainPoint> {
+  using Further = std::tuple<More...>;  ///< chains to the other links
+
+  /// Where it is, for a Problem.
+  [[nodiscard]] static Mount mount() {
+    Mount mount = SensorOn<Name, C, ChainPoint>::mount();
+    mount.links = {std::string(More::kTip)...};
+    return mount;
+  }
+};
 /// Poses in the chain's tip.
 template <FixedString Name, StaticChain C>
 struct Chain6d : SensorOn<Name, C, ChainPose> {};
@@ -95,6 +113,26 @@ concept PriorPart = requires {
 };
 
 namespace detail {
+
+template <class P>
+struct ChainsOf {
+  using type = std::tuple<typename P::Chain>;
+};
+template <class P>
+requires requires {
+  typename P::Further;
+}
+struct ChainsOf<P> {
+  using type = decltype(std::tuple_cat(std::tuple<typename P::Chain>(), typename P::Further()));
+};
+/// True if a predicate holds for all chains of a sensor: to it, or to each link of Surface3d.
+/// @param holds  takes std::type_identity<Chain>
+template <SensorPart P, class Predicate>
+[[nodiscard]] constexpr bool all_chains(const Predicate& holds) {
+  return [&]<class... Cs>(std::type_identity<std::tuple<Cs...>>) {
+    return (holds(std::type_identity<Cs>()) && ...);
+  }(std::type_identity<typename ChainsOf<P>::type>());
+}
 
 /// Parts of one kind, without duplicates.
 template <class... Ts>

@@ -14,20 +14,26 @@ struct UseOfParameter {
                 "sensor that it moves; leave it out or add such a block");
 };
 
-/// True if a parameter affects the observations of a sensor.
-template <class P, class Sensor>
-[[nodiscard]] constexpr bool moves_sensor() {
-  using Robot = typename Sensor::Chain::Robot;
-  if (P::kKind == ParameterKind::sensor) return Sensor::kName == P::kOwner;
-  if (P::kKind == ParameterKind::virtual_frame) return !kIsInOwnFrame<typename Sensor::Model>;
-  if (!Sensor::Chain::kHasLinks) return true;  // the chain's own check reports that
-  for (const std::size_t i : Sensor::Chain::kPassed) {
+/// True if a parameter moves the tip of a chain.
+template <class P, class C>
+[[nodiscard]] constexpr bool moves_chain() {
+  using Robot = typename C::Robot;
+  if (!C::kHasLinks) return true;  // the chain's own check reports that
+  for (const std::size_t i : C::kPassed) {
     const JointData& joint = Robot::kJoints[i];
     const bool moves_frame = P::kKind == ParameterKind::frame_offset;
     const auto moved = moves_frame ? joint.name : drive_of(Robot::kJoints, joint).joint;
     if (moved == P::kOwner || joint.name == P::kOwner) return true;
   }
   return false;
+}
+
+/// True if a parameter affects the observations of a sensor.
+template <class P, class Sensor>
+[[nodiscard]] constexpr bool moves_sensor() {
+  if (P::kKind == ParameterKind::sensor) return Sensor::kName == P::kOwner;
+  if (P::kKind == ParameterKind::virtual_frame) return !kIsInOwnFrame<typename Sensor::Model>;
+  return !all_chains<Sensor>([]<class C>(std::type_identity<C>) { return !moves_chain<P, C>(); });
 }
 
 /// True if a parameter is a block's own, or affects the observations of one of its sensors.

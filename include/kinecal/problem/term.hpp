@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "kinecal/errors/loss.hpp"
+#include "kinecal/errors/point_to_mesh.hpp"
+#include "kinecal/errors/point_to_outline.hpp"
 #include "kinecal/errors/prior.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/sensors/quantity.hpp"
@@ -94,6 +96,10 @@ struct Term {
   /// Of a block of poses that has scales: its residuals are distances and angles; empty for others.
   std::optional<PoseScales> pose_scales = {};
 
+  /// True if it compares clouds or masks with the surface of the robot: features of a sample are judged as a whole.
+  [[nodiscard]] bool is_of_surface() const {
+    return options.type == PointToMesh::kType || options.type == PointToOutline::kType;
+  }
   /// True if feature i is the same one for all sensors; false if all features of a sensor form one
   /// plane.
   [[nodiscard]] bool pairs_features() const {

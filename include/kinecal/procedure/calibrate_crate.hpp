@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/procedure/calibrate_robot.hpp"
@@ -39,28 +40,47 @@ struct JudgedCrate : CalibratedRobot {
   }
 };
 
+namespace detail {
+
+/// Where a calibration begins, in the order of another table; empty: at its initial values.
+[[nodiscard]] inline std::vector<double> begin_of(const Calibration& calibration,
+                                                  const ParameterTable& table) {
+  std::vector<double> begin;
+  for (int p = 0; !calibration.begin.empty() && p < table.size(); ++p) {
+    const int from = calibration.table.find(table[p].name);
+    begin.push_back(from < 0 ? table[p].value : calibration.begin[static_cast<std::size_t>(from)]);
+  }
+  return begin;
+}
+
+}  // namespace detail
+
 /// Prepares the calibration of a crate: its own problem, and the configuration of the same for what finds mistakes.
 /// @param table      Crate().table(samples), perhaps with other initial values or bounds
-/// @param urdf_text  of the robot, with the limits of its joints; empty: the robot as the crate knows it
+/// @param urdf_text  of the robot, with the limits of its joints and its meshes; empty: the robot as the crate knows it
+/// @param urdf       its file, beside which its meshes are
 /// @throws InputError  as make_calibration(), whose sentence it has
 template <class... Parts>
 [[nodiscard]] PreparedCalibration prepare(const Crate<Parts...>& crate, const ParameterTable& table,
                                           std::span<const Sample> samples,
                                           const CalibrationOptions& options = {},
-                                          const std::string& urdf_text = "") {
+                                          const std::string& urdf_text = "",
+                                          const std::string& urdf = CalibrationSetup{}.urdf) {
   CalibrationOptions as_given = options;
   as_given.search = Search::never;
-  const std::string name = "the URDF";
   CalibrationSetup setup{
-      .robot = urdf_text.empty() ? Crate<Parts...>::robot() : parse_urdf(urdf_text, name),
+      .robot = urdf_text.empty() ? Crate<Parts...>::robot() : parse_urdf(urdf_text, urdf),
       .config = config_of(crate, table),
       .samples = {samples.begin(), samples.end()},
       .urdf_text = urdf_text,
-      .urdf = name};
+      .urdf = urdf};
+  detail::keep_associations(setup.samples, *setup.config);
   PreparedCalibration prepared = prepare(std::move(setup), as_given);
   if (!prepared.diagnostics.errors.empty()) return prepared;
+  const Calibration assembled = std::move(prepared.calibration);
   prepared.calibration =
       detail::as_input_error([&] { return make_calibration(crate, table, prepared.samples); });
+  prepared.calibration.begin = detail::begin_of(assembled, table);
   prepared.calibration.steps.front().max_num_iterations = options.solving.max_num_iterations;
   return prepared;
 }
@@ -71,15 +91,17 @@ template <class... Parts>
 template <class... Parts>
 [[nodiscard]] JudgedCrate<Crate<Parts...>> calibrate_and_judge(
     const Crate<Parts...>& crate, const ParameterTable& table, std::span<const Sample> samples,
-    const CalibrationOptions& options = {}, const std::string& urdf_text = "") {
-  return {calibrate_robot(prepare(crate, table, samples, options, urdf_text), options)};
+    const CalibrationOptions& options = {}, const std::string& urdf_text = "",
+    const std::string& urdf = CalibrationSetup{}.urdf) {
+  return {calibrate_robot(prepare(crate, table, samples, options, urdf_text, urdf), options)};
 }
 /// The same with the initial values and bounds of Crate().table(samples).
 template <class... Parts>
 [[nodiscard]] JudgedCrate<Crate<Parts...>> calibrate_and_judge(
     const Crate<Parts...>& crate, std::span<const Sample> samples,
-    const CalibrationOptions& options = {}, const std::string& urdf_text = "") {
-  return calibrate_and_judge(crate, crate.table(samples), samples, options, urdf_text);
+    const CalibrationOptions& options = {}, const std::string& urdf_text = "",
+    const std::string& urdf = CalibrationSetup{}.urdf) {
+  return calibrate_and_judge(crate, crate.table(samples), samples, options, urdf_text, urdf);
 }
 
 }  // namespace kinecal

@@ -19,6 +19,8 @@
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/geometry/median.hpp"
+#include "kinecal/procedure/surface_rounds.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/trust/captures/ruined.hpp"
 #include "kinecal/trust/judge_shards.hpp"
@@ -175,7 +177,21 @@ class LogProcedure {
  public:
   LogProcedure(const PreparedLog& log, const CalibrationOptions& options,
                const CalibratedRobot& drawn)
-      : log_(log), options_(options), drawn_(drawn) {}
+      : log_(log), options_(options), drawn_(drawn), surface_input_{drawn.setup.robot,
+                                                                    drawn.setup.urdf_text,
+                                                                    drawn.setup.urdf,
+                                                                    options.mesh_paths,
+                                                                    {},
+                                                                    options.solving.threads} {
+    if (!compares_surface(*drawn.setup.config)) return;
+    Config known = *drawn.setup.config;
+    Diagnostics found;
+    surfaces_ = read_surface_blocks(surface_input_, known, found);
+    found.throw_if_errors();
+    for (const Parameter& parameter : drawn.result.table) {
+      values_[parameter.name] = parameter.value;
+    }
+  }
 
   /// Reads all files: what is wrong in them, and which of their samples are left out.
   void check_files() {
@@ -293,7 +309,22 @@ class LogProcedure {
       Config same = *draw.config;
       choose_lenses(same, samples, diagnostics);  // a given lens replaces that of camera_info
     }
+    if (!surfaces_.empty()) associate(name(file), samples, diagnostics);
     return samples;
+  }
+
+  /// Associates clouds and masks where the draw puts the robot, within its gate.  As the gradient of each residual is that of
+  /// the true distance, the solution moves from there as if they were associated anew.
+  void associate(const std::string& file, std::vector<Sample>& samples,
+                 Diagnostics& diagnostics) const {
+    Config config = *drawn_.setup.config;
+    Diagnostics found;
+    match_surface_at(surface_input_, surfaces_, values_, config, samples, found);
+    if (are_whole(
+            surfaces_)) {  // else points of links that are not listed may be near the listed ones
+      found.errors.insert(found.errors.end(), found.doubts.begin(), found.doubts.end());
+    }
+    for (const std::string& one : found.errors) diagnostics.errors.push_back(file + ": " + one);
   }
 
   /// The samples of a file that the sums use.
@@ -362,16 +393,58 @@ class LogProcedure {
     const bool leaves_out = !options_.keep_outliers && !explains_more(last()) &&
                             steps().back().problem->sample_poses().empty();
     if (!leaves_out) return;
+    if (!surfaces_.empty()) {
+      std::vector<double> typical;
+      for (const FarSample& one : wholes_of(*steps().back().problem)) typical.push_back(one.times);
+      constexpr double kTimes = 4.0;  // as captures.hpp leaves out clouds
+      const double limit =
+          typical.empty() ? HUGE_VAL : kTimes * std::max(1.0, median_of(std::move(typical)));
+      limits_.assign(last().noise.size(), limit);
+      return;
+    }
     limits_.assign(last().noise.size(), HUGE_VAL);
     for (const CaptureError& error : last().captures) {
       if (error.limit > 0.0) limits_[static_cast<std::size_t>(error.term)] = error.limit;
     }
   }
 
+  /// Samples of a problem as wholes, at the draw's solution: the root mean square of their residuals, in the noise.  As in
+  /// captures.hpp, no point of a cloud counts more than six times the noise.
+  [[nodiscard]] std::vector<FarSample> wholes_of(const AnyProblem& problem) const {
+    constexpr double kMost = 6.0;
+    std::map<int, std::pair<double, double>> sums;  // of squares, and rows
+    std::map<int, int> terms;
+    const Eigen::VectorXd values = drawn_.result.table.values();
+    const auto visit = [&](int t, int sample, const TermResiduals& rows) {
+      const double noise = std::max(last().noise[static_cast<std::size_t>(t)].robust, kRounding);
+      const double most = problem.term(t).is_of_surface() ? kMost * kMost : HUGE_VAL;
+      auto& [squares, count] = sums[sample];
+      squares += (rows.residual.cwiseProduct(rows.factor) / noise).cwiseAbs2().cwiseMin(most).sum();
+      count += static_cast<double>(rows.residual.size());
+      if (rows.residual.size() > 0) terms.emplace(sample, t);
+    };
+    (void)evaluate(problem, {values.data(), static_cast<std::size_t>(values.size())}, nullptr,
+                   visit);
+    std::vector<FarSample> all;
+    for (const auto& [sample, sum] : sums) {
+      if (!(sum.second > 0.0)) continue;
+      const double times = std::sqrt(sum.first / sum.second);
+      const int term = terms.at(sample);
+      all.push_back(
+          {sample, term, times * last().noise[static_cast<std::size_t>(term)].robust, times});
+    }
+    return all;
+  }
+
   /// The samples of a problem beyond the limits, at the draw's solution.
   [[nodiscard]] std::vector<FarSample> far_samples_of(const AnyProblem& problem) const {
     std::map<int, FarSample> far;
     if (limits_.empty()) return {};
+    if (!surfaces_.empty()) {
+      std::vector<FarSample> wholes = wholes_of(problem);
+      std::erase_if(wholes, [&](const FarSample& one) { return one.times <= limits_.front(); });
+      return wholes;
+    }
     const Eigen::VectorXd values = drawn_.result.table.values();
     const auto visit = [&](int t, int sample, const TermResiduals& rows) {
       const Term& term = problem.term(t);
@@ -423,7 +496,10 @@ class LogProcedure {
   const CalibrationOptions& options_;
   const CalibratedRobot& drawn_;
   std::vector<CheckedFile> files_;
-  std::vector<double> limits_;  ///< by error block of the last step
+  SurfaceInput surface_input_;
+  std::vector<std::vector<SurfaceBlock>> surfaces_;  ///< of each step; empty: no block has one
+  std::map<std::string, double> values_;             ///< of the draw, by name; of surfaces only
+  std::vector<double> limits_;                       ///< by error block of the last step
 };
 
 /// Numbers of samples of the draw become those in the log.

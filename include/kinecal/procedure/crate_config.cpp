@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "kinecal/errors/point_to_mesh.hpp"
+#include "kinecal/errors/point_to_outline.hpp"
+
 namespace kinecal::detail {
 
 std::map<std::string, double> default_numbers(const std::string& type, double scale) {
@@ -13,6 +16,27 @@ std::map<std::string, double> default_numbers(const std::string& type, double sc
   numbers.insert(entry->numbers.begin(), entry->numbers.end());
   if (numbers.contains("scale")) numbers["scale"] = scale;
   return numbers;
+}
+
+void add_surfaces(StepConfig& step) {
+  for (BlockConfig& block : step.error_blocks) {
+    const bool is_outline = block.type == PointToOutline::kType;
+    if (!is_outline && block.type != PointToMesh::kType) continue;
+    const std::string& name = block.models.at(is_outline ? 0 : 1);
+    const auto of_robot = std::ranges::find(step.models, name, &ModelConfig::name);
+    of_robot->is_surface = true;
+    block.surface = SurfaceConfig{.links = of_robot->frames()};
+  }
+}
+
+void keep_associations(std::span<const Sample> samples, Config& config) {
+  for (BlockConfig& block : config.steps.back().error_blocks) {
+    if (!block.surface) continue;
+    const std::string& name = block.models.at(block.type == PointToOutline::kType ? 0 : 1);
+    const bool are_given = std::ranges::any_of(
+        samples, [&](const Sample& sample) { return sample.observation(name) != nullptr; });
+    if (are_given) block.surface.reset();
+  }
 }
 
 void add_free(const std::string& name, const std::string& frame, StepConfig& step) {

@@ -8,6 +8,7 @@
 #include <concepts>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -24,6 +25,10 @@ namespace detail {
 
 /// The numbers of an error block's type at their defaults, with its scale; empty for an unknown type.
 [[nodiscard]] std::map<std::string, double> default_numbers(const std::string& type, double scale);
+/// Gives each block that compares a camera with the surface of the robot the links of its sensor.
+void add_surfaces(StepConfig& step);
+/// Takes it from those whose samples say what belongs together.
+void keep_associations(std::span<const Sample> samples, Config& config);
 /// The free axes of a frame, and initial values that are not zero.
 void add_free(const std::string& name, const std::string& frame, StepConfig& step);
 /// The values at which parameters begin, where they are not zero.
@@ -35,6 +40,7 @@ template <SensorPart P>
   using M = typename P::Model;
   const Mount mount = P::mount();
   ModelConfig model{mount.name, std::string(M::kType), mount.frame, mount.param_name, {}};
+  model.links = mount.links;
   if constexpr (requires { M::kLens; }) model.lens = M::kLens;
   if constexpr (!std::constructible_from<BuiltInSensor, M>) {
     model.own = std::make_shared<SensorEntry>(
@@ -136,6 +142,7 @@ template <class... Parts>
   C::Priors::for_each([&]<class P>(std::type_identity<P>) {
     step.error_blocks.push_back(detail::config_of_part(crate.template part<P>()));
   });
+  detail::add_surfaces(step);
   detail::add_initial_values(table, step);
   config.steps.push_back(std::move(step));
   for (StepConfig& one : config.steps) {

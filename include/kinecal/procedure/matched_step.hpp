@@ -117,20 +117,24 @@ template <class State, class Match>
   return state;
 }
 
+/// Rounds with each gate, at most, while it narrows.
+inline constexpr int kGateRounds = 3;
+
 /// Rounds whose gate narrows to four robust standard deviations of what is within it.
 /// @param gate       in: beyond it, nothing counts at all; out: the last one
 /// @param narrowest  at least
+/// @param rounds     with each gate, at most; zero: values stay
 /// @param state      in: values
 /// @param run        State(gate, values, rounds): so many rounds from there
 /// @param distances  of all features of a state
 template <class State, class Run, class Distances>
-void narrow(double& gate, double narrowest, State& state, const Run& run,
+void narrow(double& gate, double narrowest, int rounds, State& state, const Run& run,
             const Distances& distances) {
-  constexpr int kMost = 40, kRounds = 3;
+  constexpr int kMost = 40;
   constexpr double kRobust = 4.0 * 1.4826;
   for (int n = 0; n < kMost; ++n) {
     // First only the distances: with a gate that is too wide, strangers would pull.
-    state = run(gate, state.values, n == 0 ? 0 : kRounds);
+    state = run(gate, state.values, n == 0 ? 0 : rounds);
     std::vector<double> near = distances(state);
     std::erase_if(near, [&](double distance) { return !(distance <= gate); });
     if (near.empty()) return;

@@ -270,6 +270,13 @@ class OutlineFit {
     return fine(samples, best->values);
   }
 
+  /// The gate where nothing moves the robot: that which rounds have found before, or the one that goes with the distances.
+  void hold(std::span<const Sample> samples, const Eigen::VectorXd& values,
+            const std::optional<double>& found) {
+    OutlineState state{{.values = values}, {}};
+    found ? void(gate_ = *found) : set_gate(samples, 0, state);
+  }
+
  private:
   /// Rounds with a narrowing gate.
   /// @param part  of the widest gate
@@ -300,26 +307,32 @@ class OutlineFit {
     return least;
   }
 
+  /// Sets the gate: that of the losses; else it narrows with the distances.
+  /// @param rounds  with each gate, at most
+  /// @param state   in: values
+  void set_gate(std::span<const Sample> samples, int rounds, OutlineState& state) {
+    const std::optional<double> of_losses = step_.gate_of_losses(of_step_);
+    gate_ = of_losses.value_or(0.1 * size_);
+    if (of_losses) return;
+    narrow(
+        gate_, kNarrowestGate, rounds, state,
+        [&](double gate, const Eigen::VectorXd& from, int most) {
+          return rounds_.run({.gate = gate, .rounds = most}, samples, from);
+        },
+        [](const OutlineState& at) {
+          std::vector<double> distances;
+          for (const OutlineHits& of_block : at.hits) {
+            const std::vector<double> more = distances_of(of_block);
+            distances.insert(distances.end(), more.begin(), more.end());
+          }
+          return distances;
+        });
+  }
+
   [[nodiscard]] OutlineState fine(std::span<const Sample> samples, const Eigen::VectorXd& values) {
     constexpr int kMost = 30;
     OutlineState state{{.values = values}, {}};
-    const std::optional<double> of_losses = step_.gate_of_losses(of_step_);
-    gate_ = of_losses.value_or(0.1 * size_);
-    if (!of_losses) {
-      narrow(
-          gate_, kNarrowestGate, state,
-          [&](double gate, const Eigen::VectorXd& from, int rounds) {
-            return rounds_.run({.gate = gate, .rounds = rounds}, samples, from);
-          },
-          [](const OutlineState& at) {
-            std::vector<double> distances;
-            for (const OutlineHits& of_block : at.hits) {
-              const std::vector<double> more = distances_of(of_block);
-              distances.insert(distances.end(), more.begin(), more.end());
-            }
-            return distances;
-          });
-    }
+    set_gate(samples, kGateRounds, state);
     return rounds_.run({.gate = gate_, .rounds = kMost}, samples, state.values);
   }
 
@@ -407,10 +420,11 @@ class OutlineFit {
   return count == 0 ? 1.0 : sum / count;
 }
 
-/// Says how the masks lie on the robot; an error if they do not.
+/// Says how the masks lie on the robot; an error if they do not, or a doubt if nothing was fitted.
 /// @param moves  see moving_links()
 void report_fit(const OutlineBlock& of_masks, const BlockConfig& of, double gate,
-                const OutlineHits& hits, const std::vector<bool>& moves, Diagnostics& diagnostics) {
+                const OutlineHits& hits, const std::vector<bool>& moves, bool is_fitted,
+                Diagnostics& diagnostics) {
   const SurfaceBlock& block = *of_masks.of;
   const double near = of_masks.near();
   const std::vector<double> edges = distances_of(hits, &OutlineMatch::edges),
@@ -422,17 +436,18 @@ void report_fit(const OutlineBlock& of_masks, const BlockConfig& of, double gate
                   block.pair.camera, counted(hits.size(), "sample"));
   const double on_moving = share_of_moving(hits, moves, near);
   if (on_edges < kLeastShare || on_outline < kLeastShare || on_moving < kLeastShare) {
-    diagnostics.error(
-        of.place,
-        fmt::format(
-            "error block '{}': the masks do not show the robot.  Of {}, {:.0f} % are within "
-            "{:.3g} px of its outline after the best fit, and {:.0f} % of its outline, {:.0f} % of "
-            "that "
-            "of links that move, within {:.3g} px of them.  Are these masks of this robot (255: "
-            "robot), of this camera, "
-            "with the joints of the same images?  If the camera's pose is far off, leave its "
-            "initial values out: then it is searched for",
-            of.name, masks, 100.0 * on_edges, near, 100.0 * on_outline, 100.0 * on_moving, near));
+    const std::string why = fmt::format(
+        "error block '{}': the masks do not show the robot.  Of {}, {:.0f} % are within "
+        "{:.3g} px of its outline {}, and {:.0f} % of its outline, {:.0f} % of that "
+        "of links that move, within {:.3g} px of them.  Are these masks of this robot (255: "
+        "robot), of this camera, with the joints of the same images?{}",
+        of.name, masks, 100.0 * on_edges, near,
+        is_fitted ? "after the best fit" : "where the result puts it", 100.0 * on_outline,
+        100.0 * on_moving, near,
+        is_fitted ? "  If the camera's pose is far off, leave its initial values out: then it is "
+                    "searched for"
+                  : "");
+    is_fitted ? diagnostics.error(of.place, why) : diagnostics.doubt(of.place, why);
     return;
   }
   const LossType type = loss_type(of.loss.type);
@@ -459,15 +474,19 @@ void report_fit(const OutlineBlock& of_masks, const BlockConfig& of, double gate
 }  // namespace detail
 
 void match_outlines(const SurfaceInput& input, Config& config, std::size_t number,
-                    std::span<const SurfaceBlock> blocks, std::vector<Sample>& samples,
-                    Eigen::VectorXd& values, std::span<const UnknownFrame> unknown,
-                    Diagnostics& diagnostics) {
+                    std::span<const SurfaceBlock> blocks, bool is_held,
+                    std::vector<Sample>& samples, Eigen::VectorXd& values,
+                    std::span<const UnknownFrame> unknown, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
   StepConfig& of_step = config.steps[number];
   const MatchedStep step(input, config, number);
   detail::OutlineFit fit(step, blocks, samples);
   const std::vector<Sample> heard = heard_samples(samples, input.exclude);
-  values = fit.run(heard, values, unknown, diagnostics).values;
+  if (is_held) {
+    fit.hold(heard, values, block_of(of_step, blocks.front().name).surface->gate);
+  } else {
+    values = fit.run(heard, values, unknown, diagnostics).values;
+  }
   constexpr double kFar = 1e3;  // pixels
   const std::unique_ptr<AnyProblem> problem = step.problem();
   const std::vector<OutlineHits> hits =
@@ -475,14 +494,16 @@ void match_outlines(const SurfaceInput& input, Config& config, std::size_t numbe
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     detail::report_fit(fit.rounds().blocks()[b], block_of(of_step, blocks[b].name), fit.gate(),
                        hits[b], detail::moving_links(blocks[b], *problem, samples, values),
-                       diagnostics);
+                       !is_held, diagnostics);
   }
   if (diagnostics.errors.size() > before) return;
   if (fit.alike()) diagnostics.doubt(of_step.place, *fit.alike());
   samples = fit.rounds().matched(samples, hits, fit.gate());
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     constexpr double kLeast = 1e-3;  // pixels
-    keep_loss(block_of(of_step, blocks[b].name), detail::distances_of(hits[b]), fit.gate(), kLeast);
+    BlockConfig& of = block_of(of_step, blocks[b].name);
+    of.surface->gate = fit.gate();
+    keep_loss(of, detail::distances_of(hits[b]), fit.gate(), kLeast);
   }
 }
 

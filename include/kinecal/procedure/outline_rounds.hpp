@@ -22,13 +22,14 @@ namespace kinecal {
 /// @param number   of the step
 /// @param blocks   its blocks of masks
 /// @param config   such a block gets the noise that its edges show, if it has a loss
+/// @param is_held  values stay: nothing is solved, and masks that do not show the robot are a doubt
 /// @param samples  get the outline; edges that are not of the robot are left out
 /// @param values   in: where rounds begin, of all parameters of the assembled table; out: where they ended
 /// @param unknown  frames whose pose may be searched for
 /// @param diagnostics  errors: masks that do not show the robot; notes: the fit, links that are always off
 void match_outlines(const SurfaceInput& input, Config& config, std::size_t number,
-                    std::span<const SurfaceBlock> blocks, std::vector<Sample>& samples,
-                    Eigen::VectorXd& values, std::span<const UnknownFrame> unknown,
-                    Diagnostics& diagnostics);
+                    std::span<const SurfaceBlock> blocks, bool is_held,
+                    std::vector<Sample>& samples, Eigen::VectorXd& values,
+                    std::span<const UnknownFrame> unknown, Diagnostics& diagnostics);
 
 }  // namespace kinecal

@@ -44,6 +44,9 @@ namespace {
 [[nodiscard]] std::vector<int> open_parameters(const SessionResult& result,
                                                std::span<const Sample> ahead) {
   const Assessment& step = result.step;
+  for (int t = 0; t < result.problem.num_terms(); ++t) {
+    if (result.problem.term(t).is_of_surface()) return {};  // what poses would show is not known
+  }
   const auto useful = [&](std::size_t c) {
     return useful_deviation(result.problem.table()[step.parameters[c]]);
   };
@@ -192,7 +195,8 @@ std::string why_go_on(const Accuracy& wanted, const SessionResult& result,
 std::string why_go_on(const Accuracy& wanted, const SessionFollower& session,
                       std::span<const Sample> ahead) {
   return detail::as_input_error([&]() -> std::string {
-    CalibratedRobot all = detail::solve_and_judge(prepare(session.setup()), {});
+    const CalibrationOptions& options = session.options();
+    CalibratedRobot all = detail::solve_and_judge(prepare(session.setup(), options), options);
     if (all.assessments.empty()) return all.result.termination;
     const Eigen::VectorXd values = all.result.table.values();
     std::string why = why_go_on(wanted,
@@ -203,7 +207,7 @@ std::string why_go_on(const Accuracy& wanted, const SessionFollower& session,
                                  all.samples},
                                 ahead);
     if (!why.empty()) return why;
-    detail::explain(all, {});
+    detail::explain(all, options);
     why = detail::not_usable(all.judgement);
     return why.empty() ? detail::cured_by_poses(all.judgement) : why;
   });

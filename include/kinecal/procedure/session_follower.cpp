@@ -9,18 +9,23 @@
 #include <sstream>
 
 #include "kinecal/config/assemble.hpp"
+#include "kinecal/procedure/surface_rounds.hpp"
 #include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/trust/uncertainty/compared_frames.hpp"
+#include "kinecal/trust/uncertainty/pose_elsewhere.hpp"
 
 namespace kinecal {
 
 SessionFollower::SessionFollower(Config config, Robot robot, const std::string& frame,
-                                 std::string urdf_text)
+                                 std::string urdf_text, std::string urdf,
+                                 CalibrationOptions options)
     : config_(std::move(config)),
       robot_(std::move(robot)),
       frame_(frame),
-      urdf_text_(std::move(urdf_text)) {
+      urdf_text_(std::move(urdf_text)),
+      urdf_(std::move(urdf)),
+      options_(std::move(options)) {
   if (!config_.per_sample.empty()) {
     throw InputError(config_.per_sample.front().place.str() +
                      ": per_sample: a session cannot be followed while a target has a pose of its "
@@ -76,6 +81,46 @@ OnlineState SessionFollower::start_again(std::span<const Sample> ahead) {
   return state;
 }
 
+/// Associates, calibrates and assesses all samples, the last one among them.
+void SessionFollower::calibrate_surface(std::span<const Sample> ahead, FollowedState& followed) {
+  constexpr std::size_t kFewest = 3;
+  if (samples_.size() < kFewest) return;
+  CalibrationOptions options = options_;
+  options.folds = 1;  // the end of a session asks for errors on held-out samples
+  PreparedCalibration prepared = prepare(setup(), options);
+  if (!prepared.diagnostics.errors.empty()) {
+    followed.problem = prepared.diagnostics.errors.front();
+    if (frames_) samples_.pop_back();  // those before it lie on the robot
+    return;
+  }
+  const CalibratedRobot all = detail::solve_and_judge(std::move(prepared), options);
+  OnlineState& online = followed.online;
+  online.samples = static_cast<int>(all.samples.size());
+  for (const LeftOutSample& left : all.left_out) {
+    if (left.number == static_cast<int>(samples_.size())) online.fits = false;
+    if (!left_out_.insert(left.number).second || !online.fits) continue;
+    online.dropped.push_back(left.number);
+  }
+  if (!all.result.converged || all.assessments.empty()) return;
+  const AnyProblem& problem = *all.setup.calibration.steps.back().problem;
+  frames_ = compared_frames(problem, all.samples);
+  if (!frames_) return;
+  if (!frame_.empty()) frames_->first = {frame_};
+  const Assessment& step = all.assessments.back();
+  const Eigen::VectorXd table = all.result.table.values();
+  const ParameterValues values(table.data(), static_cast<std::size_t>(table.size()));
+  online.known = all.is_usable();
+  for (const std::span<const Sample> poses : {std::span<const Sample>(all.samples), ahead}) {
+    if (poses.empty()) continue;
+    const PoseUncertainty pose =
+        pose_at(problem, step, values, poses, frames_->first, frames_->second);
+    online.known = online.known && pose.determined;
+    online.position = std::max(online.position, pose.position);
+    online.rotation = std::max(online.rotation, pose.rotation);
+  }
+  online.noise = step.noise.front().robust;
+}
+
 /// The sample of a robot that stands still, after those before it.
 Sample SessionFollower::at_rest(Sample sample) const {
   std::vector<Sample> all = samples_;
@@ -91,7 +136,10 @@ FollowedState SessionFollower::add(const Sample& captured, std::span<const Sampl
   const Sample sample = at_rest(captured);
   try {
     check(sample);
-    if (online_) {
+    if (compares_surface(config_)) {
+      samples_.push_back(sample);
+      calibrate_surface(ahead, followed);
+    } else if (online_) {
       online_->expect({ahead.begin(), ahead.end()});
       followed.online = online_->add(sample);
       samples_.push_back(sample);
@@ -105,12 +153,18 @@ FollowedState SessionFollower::add(const Sample& captured, std::span<const Sampl
     if (online_ && followed.online.known) followed.next = online_->next_move();
   } catch (const SampleError& error) {
     followed.problem = error.what();
+  } catch (const InputError& error) {
+    followed.problem = error.what();
   }
   return followed;
 }
 
 CalibrationSetup SessionFollower::setup() const {
-  return {.robot = robot_, .config = config_, .samples = samples_, .urdf_text = urdf_text_};
+  return {.robot = robot_,
+          .config = config_,
+          .samples = samples_,
+          .urdf_text = urdf_text_,
+          .urdf = urdf_};
 }
 
 Sample at_pose(const CapturePose& pose, const Sample& sample) {

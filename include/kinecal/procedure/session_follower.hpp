@@ -5,11 +5,15 @@
 // The first samples are calibrated as a whole, which finds unknown poses; after that, each sample
 // is an update (trust/online.hpp).  If two samples in a row do not fit, the start may have been
 // wrong, and all samples are calibrated anew.
+//
+// Where the robot is its own target, what belongs together is another thing for each solution: all samples are associated,
+// calibrated and assessed anew with each.  The next move is not known then.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -36,12 +40,15 @@ struct FollowedState {
 class SessionFollower {
  public:
   /// @param urdf_text  of the robot: see CalibrationSetup
+  /// @param urdf       its file, beside which its meshes are
+  /// @param options    of the calibrations
   /// @param frame  link or free frame whose pose is wanted; empty: that of the first error block of
   ///               the last step
   /// @throws InputError  if the configuration does not match the robot or has `per_sample`, or the robot has no such
   ///                     link, with the nearest name
   SessionFollower(Config config, Robot robot, const std::string& frame = {},
-                  std::string urdf_text = {});
+                  std::string urdf_text = {}, std::string urdf = CalibrationSetup{}.urdf,
+                  CalibrationOptions options = {});
   SessionFollower(const SessionFollower&) = delete;
   SessionFollower& operator=(const SessionFollower&) = delete;
   ~SessionFollower() = default;
@@ -54,7 +61,11 @@ class SessionFollower {
   [[nodiscard]] CalibrationSetup setup() const;
   /// Calibrates and judges all samples so far.
   /// @throws InputError  if they do not suffice
-  [[nodiscard]] CalibratedRobot calibrate_all() const { return calibrate_robot(setup()); }
+  [[nodiscard]] CalibratedRobot calibrate_all() const {
+    return calibrate_robot(prepare(setup(), options_), options_);
+  }
+  /// Those of its calibrations.
+  [[nodiscard]] const CalibrationOptions& options() const { return options_; }
 
   /// The frame whose pose is meant, and the one in which it is meant; empty before it is known.
   [[nodiscard]] std::pair<std::string, std::string> frames() const;
@@ -64,16 +75,20 @@ class SessionFollower {
   void check(const Sample& sample) const;
   [[nodiscard]] bool start();
   [[nodiscard]] OnlineState start_again(std::span<const Sample> ahead);
+  void calibrate_surface(std::span<const Sample> ahead, FollowedState& followed);
 
   Config config_;
   Robot robot_;
   std::string frame_;
-  std::string urdf_text_;
+  std::string urdf_text_, urdf_;
+  CalibrationOptions options_;
   std::unique_ptr<AnyProblem> problem_;  ///< of the last step, without samples
   std::vector<Sample> samples_;          ///< all of the session that suit the configuration
   std::optional<OnlineCalibration> online_;
   std::optional<std::pair<FrameOnRobot, FrameOnRobot>> frames_;
   int misfits_ = 0;  ///< samples in a row that do not fit
+  std::set<int>
+      left_out_{};  ///< numbers of samples that calibrations of a surface left out, from 1
 };
 
 /// When a session may end: "gripper 1 mm", "gripper 0.1 deg", "wrist_roll_link 0.5 mm".

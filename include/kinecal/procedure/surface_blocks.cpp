@@ -148,6 +148,12 @@ std::vector<std::vector<SurfaceBlock>> read_surface_blocks(const SurfaceInput& i
   return detail::SurfaceResolver(input, config, diagnostics).read();
 }
 
+bool are_whole(const std::vector<std::vector<SurfaceBlock>>& blocks) {
+  return std::ranges::all_of(blocks, [](const std::vector<SurfaceBlock>& of_step) {
+    return std::ranges::all_of(of_step, &SurfaceBlock::is_whole);
+  });
+}
+
 const BlockConfig& block_of(const StepConfig& step, const std::string& name) {
   return detail::find_block(step, name);
 }

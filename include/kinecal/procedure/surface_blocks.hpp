@@ -42,6 +42,9 @@ struct SurfaceBlock {
                                                                          Config& config,
                                                                          Diagnostics& diagnostics);
 
+/// True if no block leaves out a link whose points may be near its own.
+[[nodiscard]] bool are_whole(const std::vector<std::vector<SurfaceBlock>>& blocks);
+
 /// The error block of this name, which is in the step.
 /// @{
 [[nodiscard]] const BlockConfig& block_of(const StepConfig& step, const std::string& name);

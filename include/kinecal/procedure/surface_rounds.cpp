@@ -256,6 +256,13 @@ class SurfaceFit {
     return fine(samples, end.values);
   }
 
+  /// The gate where nothing moves the robot: that which rounds have found before, or the one that goes with the distances.
+  void hold(std::span<const Sample> samples, const Eigen::VectorXd& values,
+            const std::optional<double>& found) {
+    RoundState state{{.values = values}, {}};
+    found ? void(gate_ = *found) : set_gate(samples, 0, state);
+  }
+
   /// The median distances of clouds that had no say, with free joints and with held ones; nullopt if free ones bring them
   /// nearer.  Two halves of the samples are judged by each other.
   /// @param joints  table indices of free parameters of joints
@@ -403,26 +410,32 @@ class SurfaceFit {
     return all;
   }
 
+  /// Sets the gate: that of the losses; else it narrows with the distances.
+  /// @param rounds  with each gate, at most
+  /// @param state   in: values
+  void set_gate(std::span<const Sample> samples, int rounds, RoundState& state) {
+    const std::optional<double> of_losses = step_.gate_of_losses(blocks_);
+    gate_ = of_losses.value_or(0.1);
+    if (of_losses) return;
+    narrow(
+        gate_, kNarrowest, rounds, state,
+        [&](double gate, const Eigen::VectorXd& from, int most) {
+          return rounds_.run({.gate = gate, .rounds = most}, samples, from);
+        },
+        [](const RoundState& at) {
+          std::vector<double> distances;
+          for (const SurfaceHits& of_block : at.hits) {
+            const std::vector<double> more = quality_of(of_block).distances;
+            distances.insert(distances.end(), more.begin(), more.end());
+          }
+          return distances;
+        });
+  }
+
   [[nodiscard]] RoundState fine(std::span<const Sample> samples, const Eigen::VectorXd& values) {
     constexpr int kMost = 40;
     RoundState state{{.values = values}, {}};
-    const std::optional<double> of_losses = step_.gate_of_losses(blocks_);
-    gate_ = of_losses.value_or(0.1);
-    if (!of_losses) {
-      narrow(
-          gate_, kNarrowest, state,
-          [&](double gate, const Eigen::VectorXd& from, int rounds) {
-            return rounds_.run({.gate = gate, .rounds = rounds}, samples, from);
-          },
-          [](const RoundState& at) {
-            std::vector<double> distances;
-            for (const SurfaceHits& of_block : at.hits) {
-              const std::vector<double> more = quality_of(of_block).distances;
-              distances.insert(distances.end(), more.begin(), more.end());
-            }
-            return distances;
-          });
-    }
+    set_gate(samples, kGateRounds, state);
     return rounds_.run({.gate = gate_, .rounds = kMost}, samples, state.values);
   }
 
@@ -544,9 +557,10 @@ void check_coverage(const SurfaceBlock& block, const BlockConfig& of, const AnyP
   return text;
 }
 
-/// Says how the points of a camera lie on the robot; an error if they do not.
+/// Says how the points of a camera lie on the robot; an error if they do not, or a doubt if nothing was fitted.
 void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
-                const SurfaceHits& hits, std::size_t samples, Diagnostics& diagnostics) {
+                const SurfaceHits& hits, std::size_t samples, bool is_fitted,
+                Diagnostics& diagnostics) {
   const SurfaceQuality quality = quality_of(hits);
   if (quality.distances.empty()) return;  // assemble() says so
   const double on = quality.share(kOnRobot);
@@ -557,16 +571,19 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
   if (on < kFewest || quality.contrast() < 1.0) {
     const std::string why = fmt::format(
         "error block '{}': the points do not lie on the robot.  Of {}, {:.1f} % are "
-        "within {:.0f} mm of its surface after the best fit, and of those within {:.0f} "
+        "within {:.0f} mm of its surface {}, and of those within {:.0f} "
         "mm {:.0f} % within {:.0f} mm: hardly more than by chance.  Are these clouds of this "
-        "robot, in metres, in the frame of the camera, with the joints of the same time?  "
-        "If the camera's pose is far off, leave its initial values out: then it is "
-        "searched for",
-        of.name, cloud, 100.0 * on, 1e3 * kOnRobot, 2.5e3 * kOnRobot,
+        "robot, in metres, in the frame of the camera, with the joints of the same time?{}",
+        of.name, cloud, 100.0 * on, 1e3 * kOnRobot,
+        is_fitted ? "after the best fit" : "where the result puts it", 2.5e3 * kOnRobot,
         100.0 * quality.share(kOnRobot / 2.0) / std::max(1e-12, quality.share(2.5 * kOnRobot)),
-        0.5e3 * kOnRobot);
+        0.5e3 * kOnRobot,
+        is_fitted ? "  If the camera's pose is far off, leave its initial values out: then it is "
+                    "searched for"
+                  : "");
     // Points of links that are not listed may be near the listed ones.
-    block.is_whole ? diagnostics.error(of.place, why) : diagnostics.doubt(of.place, why);
+    block.is_whole&& is_fitted ? diagnostics.error(of.place, why)
+                               : diagnostics.doubt(of.place, why);
     return;
   }
   const LossType type = loss_type(of.loss.type);
@@ -679,18 +696,19 @@ void check_units(const SurfaceBlock& block, std::span<const Sample> samples,
 /// A few points on the first link, to assemble what depends on samples.
 [[nodiscard]] std::vector<Sample> assumed_samples(std::span<const SurfaceBlock> blocks,
                                                   std::span<const Sample> samples,
-                                                  const std::string& base) {
+                                                  const StepConfig& step) {
   constexpr int kPoints = 8;
   std::vector<Sample> all(samples.begin(), samples.end());
   for (const SurfaceBlock& block : blocks) {
     all = with_fewer_points(all, block.pair.camera, kPoints);
+    const auto model = std::ranges::find(step.models, block.pair.robot, &ModelConfig::name);
     for (Sample& sample : all) {
       const Observation* seen = sample.observation(block.pair.camera);
       if (seen == nullptr) continue;
       Observation robot{.sensor = block.pair.robot, .features = {}};
       for (const Feature& feature : seen->features) {
         robot.features.push_back(
-            {.frame = base,
+            {.frame = model->frame,
              .id = feature.id,
              .conditions = {{"nx", 0.0}, {"ny", 0.0}, {"nz", 1.0}, {"nu", 1.0}, {"nv", 0.0}}});
       }
@@ -700,10 +718,29 @@ void check_units(const SurfaceBlock& block, std::span<const Sample> samples,
   return all;
 }
 
+/// Says how the points of blocks lie on the robot.
+/// @param is_fitted  where rounds have ended: clouds and cameras that cannot be there are errors
+void judge_clouds(std::span<const SurfaceBlock> blocks, const StepConfig& of_step,
+                  const AnyProblem& problem, std::span<const Sample> samples,
+                  const Eigen::VectorXd& values, double gate, const std::vector<SurfaceHits>& hits,
+                  bool is_fitted, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.errors.size();
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const BlockConfig& of = block_of(of_step, blocks[b].name);
+    report_fit(blocks[b], of, gate, hits[b], samples.size(), is_fitted, diagnostics);
+    if (!is_fitted) continue;
+    check_camera(blocks[b], of, problem, samples, values, diagnostics);
+    if (diagnostics.errors.size() == before) {
+      check_coverage(blocks[b], of, problem, samples, values, diagnostics);
+    }
+  }
+}
+
 /// Associates the clouds of a step.
-/// @param values  in: where rounds begin; out: where they ended
+/// @param is_held  values stay; else rounds find them
+/// @param values   in: where rounds begin; out: where they ended
 void match_clouds(const SurfaceInput& input, Config& config, std::size_t number,
-                  std::span<const SurfaceBlock> blocks, const Calibration& assumed,
+                  std::span<const SurfaceBlock> blocks, const Calibration& assumed, bool is_held,
                   std::vector<Sample>& samples, Eigen::VectorXd& values, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
   const std::vector<Sample> heard = heard_samples(samples, input.exclude);
@@ -711,28 +748,78 @@ void match_clouds(const SurfaceInput& input, Config& config, std::size_t number,
   const MatchedStep step(input, config, number);
   SurfaceFit fit(step, blocks);
   const Eigen::VectorXd start = values;
-  values = fit.run(heard, start, assumed.steps[number].unknown_frames, diagnostics).values;
+  if (is_held) {
+    fit.hold(heard, values, block_of(of_step, blocks.front().name).surface->gate);
+  } else {
+    values = fit.run(heard, start, assumed.steps[number].unknown_frames, diagnostics).values;
+  }
   const SurfaceRounds rounds(step, blocks);
   const std::unique_ptr<AnyProblem> problem = step.problem();
   const std::vector<SurfaceHits> hits =
       rounds.associated(*problem, samples, values, std::numeric_limits<double>::infinity());
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const BlockConfig& of = block_of(of_step, blocks[b].name);
-    report_fit(blocks[b], of, fit.gate(), hits[b], samples.size(), diagnostics);
-    check_camera(blocks[b], of, *problem, samples, values, diagnostics);
-    if (diagnostics.errors.size() == before) {
-      check_coverage(blocks[b], of, *problem, samples, values, diagnostics);
-    }
-  }
-  if (diagnostics.errors.size() == before) {
+  judge_clouds(blocks, of_step, *problem, samples, values, fit.gate(), hits, !is_held, diagnostics);
+  if (!is_held && diagnostics.errors.size() == before) {
     if (fit.alike()) diagnostics.doubt(of_step.place, *fit.alike());
     check_joints(fit, input, of_step, assumed.table, heard, start, values, diagnostics);
   }
   samples = rounds.matched(samples, hits, fit.gate());
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     constexpr double kLeast = 1e-6;  // metres
-    keep_loss(block_of(of_step, blocks[b].name), quality_of(hits[b]).distances, fit.gate(), kLeast);
+    BlockConfig& of = block_of(of_step, blocks[b].name);
+    of.surface->gate = fit.gate();
+    keep_loss(of, quality_of(hits[b]).distances, fit.gate(), kLeast);
   }
+}
+
+/// Associates the samples of all steps.
+/// @param held  values by name that stay; nullptr: rounds find them
+/// @returns  where the rounds ended, of all parameters of the assembled table; empty after an error
+[[nodiscard]] Eigen::VectorXd match_steps(const SurfaceInput& input,
+                                          std::vector<std::vector<SurfaceBlock>> steps,
+                                          const std::map<std::string, double>* held, Config& config,
+                                          std::vector<Sample>& samples, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.errors.size();
+  Eigen::VectorXd values;
+  std::vector<Sample> matched = samples;
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    if (steps[s].empty()) continue;
+    const auto first_mask =
+        std::stable_partition(steps[s].begin(), steps[s].end(),
+                              [](const SurfaceBlock& block) { return !block.is_outline; });
+    const std::span<const SurfaceBlock> clouds(steps[s].begin(), first_mask),
+        masks(first_mask, steps[s].end());
+    for (const SurfaceBlock& block : clouds) {
+      check_units(block, samples, diagnostics);
+      const int most = block_of(config.steps[s], block.name).surface->points;
+      matched = with_fewer_points(matched, block.pair.camera, most);
+    }
+    if (diagnostics.errors.size() > before) return {};
+    Diagnostics quiet;
+    const Calibration assumed = kinecal::assemble(
+        config, input.robot, assumed_samples(steps[s], matched, config.steps[s]), quiet);
+    if (!quiet.errors.empty()) {
+      diagnostics.errors.insert(diagnostics.errors.end(), quiet.errors.begin(), quiet.errors.end());
+      return {};
+    }
+    if (values.size() == 0) values = assumed.table.values();
+    for (const auto& [index, value] : assumed.steps[s].assignments) values[index] = value;
+    for (int p = 0; held != nullptr && p < assumed.table.size(); ++p) {
+      const auto value = held->find(assumed.table[p].name);
+      if (value != held->end()) values[p] = value->second;
+    }
+    const bool is_held = held != nullptr;
+    std::span<const UnknownFrame> unknown = assumed.steps[s].unknown_frames;
+    if (!clouds.empty()) {
+      match_clouds(input, config, s, clouds, assumed, is_held, matched, values, diagnostics);
+      unknown = {};
+    }
+    if (!masks.empty() && diagnostics.errors.size() == before) {
+      match_outlines(input, config, s, masks, is_held, matched, values, unknown, diagnostics);
+    }
+  }
+  if (diagnostics.errors.size() > before) return {};
+  samples = std::move(matched);
+  return values;
 }
 
 }  // namespace
@@ -748,44 +835,24 @@ bool compares_surface(const Config& config) {
 std::vector<double> match_surface(const SurfaceInput& input, Config& config,
                                   std::vector<Sample>& samples, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
+  if (input.urdf_text.empty()) {
+    diagnostics.errors.push_back(
+        "the robot is compared with its own surface, but without its URDF there are no meshes; "
+        "give the text of the URDF and its file");
+    return {};
+  }
   std::vector<std::vector<SurfaceBlock>> steps = read_surface_blocks(input, config, diagnostics);
   if (diagnostics.errors.size() > before || samples.empty()) return {};
-  Eigen::VectorXd values;
-  std::vector<Sample> matched = samples;
-  for (std::size_t s = 0; s < steps.size(); ++s) {
-    if (steps[s].empty()) continue;
-    const auto first_mask =
-        std::stable_partition(steps[s].begin(), steps[s].end(),
-                              [](const SurfaceBlock& block) { return !block.is_outline; });
-    const std::span<const SurfaceBlock> clouds(steps[s].begin(), first_mask),
-        masks(first_mask, steps[s].end());
-    for (const SurfaceBlock& block : clouds) {
-      detail::check_units(block, samples, diagnostics);
-      const int most = block_of(config.steps[s], block.name).surface->points;
-      matched = with_fewer_points(matched, block.pair.camera, most);
-    }
-    if (diagnostics.errors.size() > before) return {};
-    Diagnostics quiet;
-    const Calibration assumed = assemble(
-        config, input.robot, detail::assumed_samples(steps[s], matched, config.base_link), quiet);
-    if (!quiet.errors.empty()) {
-      diagnostics.errors.insert(diagnostics.errors.end(), quiet.errors.begin(), quiet.errors.end());
-      return {};
-    }
-    if (values.size() == 0) values = assumed.table.values();
-    for (const auto& [index, value] : assumed.steps[s].assignments) values[index] = value;
-    std::span<const UnknownFrame> unknown = assumed.steps[s].unknown_frames;
-    if (!clouds.empty()) {
-      detail::match_clouds(input, config, s, clouds, assumed, matched, values, diagnostics);
-      unknown = {};
-    }
-    if (!masks.empty() && diagnostics.errors.size() == before) {
-      match_outlines(input, config, s, masks, matched, values, unknown, diagnostics);
-    }
-  }
-  if (diagnostics.errors.size() > before) return {};
-  samples = std::move(matched);
+  const Eigen::VectorXd values =
+      detail::match_steps(input, std::move(steps), nullptr, config, samples, diagnostics);
   return {values.data(), values.data() + values.size()};
+}
+
+void match_surface_at(const SurfaceInput& input, std::vector<std::vector<SurfaceBlock>> blocks,
+                      const std::map<std::string, double>& values, Config& config,
+                      std::vector<Sample>& samples, Diagnostics& diagnostics) {
+  if (samples.empty()) return;
+  (void)detail::match_steps(input, std::move(blocks), &values, config, samples, diagnostics);
 }
 
 }  // namespace kinecal

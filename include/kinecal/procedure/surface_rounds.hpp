@@ -9,6 +9,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -30,5 +31,15 @@ namespace kinecal {
 [[nodiscard]] std::vector<double> match_surface(const SurfaceInput& input, Config& config,
                                                 std::vector<Sample>& samples,
                                                 Diagnostics& diagnostics);
+
+/// The same with the robot and its cameras where given values put them: nothing is solved.  Where rounds have found a gate
+/// before (SurfaceConfig::gate), it stays.
+/// @param blocks  read_surface_blocks() of the configuration
+/// @param values  by name; other parameters have their initial values
+/// @param diagnostics  errors: clouds that cannot be in metres; doubts: clouds and masks that do not lie on the robot there;
+///                     notes: how they lie on it
+void match_surface_at(const SurfaceInput& input, std::vector<std::vector<SurfaceBlock>> blocks,
+                      const std::map<std::string, double>& values, Config& config,
+                      std::vector<Sample>& samples, Diagnostics& diagnostics);
 
 }  // namespace kinecal

@@ -32,7 +32,7 @@ class DesignRows {
       : changing_(make, values, samples), noise_(noise) {
     const StudyRows rows = changing_.rows(changing_.samples(), &free);
     const Stack no_rows{
-        {}, Eigen::MatrixXd(0, free.size()), {}, {}};  // of a sample that no block uses
+        {}, Eigen::MatrixXd(0, free.size()), {}, {}, {}};  // of a sample that no block uses
     stacks_.assign(changing_.samples().size(), no_rows);
     for (const auto& [key, jacobian] : rows.jacobian) {
       Stack& stack = stacks_[sample_of(key)];
@@ -40,18 +40,21 @@ class DesignRows {
       stack.jacobian.conservativeResize(stack.jacobian.rows() + jacobian.rows(), free.size());
       stack.jacobian.bottomRows(jacobian.rows()) = jacobian;
     }
+    if (targets == Targets::free) add_targets();
+    const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(free.size(), free.size());
+    for (Stack& stack : stacks_) {
+      stack.effective = stack.without_half(stack.jacobian);
+      stack.scores = nothing;
+    }
     add_features();
     add_joints();
-    if (targets == Targets::free) add_targets();
   }
 
   [[nodiscard]] std::vector<SampleDesign> designs() const {
     std::vector<SampleDesign> all;
     for (const Stack& stack : stacks_) {
-      const Eigen::MatrixXd j = stack.without_half(stack.jacobian);
-      const Eigen::MatrixXd scores = j.transpose() * stack.matrix(stack.errors);
       all.push_back(
-          {PlainMatrix(stack.jacobian.transpose() * j), PlainMatrix(scores * scores.transpose())});
+          {PlainMatrix(stack.jacobian.transpose() * stack.effective), PlainMatrix(stack.scores)});
     }
     return all;
   }
@@ -61,8 +64,9 @@ class DesignRows {
   struct Stack {
     std::map<FeatureKey, Eigen::Index> first;  ///< of each feature's rows
     Eigen::MatrixXd jacobian;                  ///< weighted
-    std::vector<Eigen::VectorXd> errors;       ///< weighted change by one standard deviation
     std::vector<Eigen::VectorXd> motions;      ///< weighted change by a motion of a free target
+    Eigen::MatrixXd effective;                 ///< (I - P / 2) jacobian
+    Eigen::MatrixXd scores;                    ///< V of the errors so far
 
     [[nodiscard]] Eigen::MatrixXd matrix(const std::vector<Eigen::VectorXd>& columns) const {
       Eigen::MatrixXd all(jacobian.rows(), static_cast<Eigen::Index>(columns.size()));
@@ -86,23 +90,44 @@ class DesignRows {
     return static_cast<std::size_t>(std::get<0>(key));
   }
 
-  /// Adds the difference of two evaluations to each sample, one error per group of keys.
-  /// @param half   of the change between them, in standard deviations
-  /// @param apart  features err independently; else all rows of a sample together
-  /// @param list   destination
-  void add(const StudyRows& after, const StudyRows& before, double half, bool apart,
-           std::vector<Eigen::VectorXd> Stack::*list = &Stack::errors) {
-    std::map<std::pair<std::size_t, int>, Eigen::VectorXd> changes;
+  /// Calls a function with each feature's rows in a stack and their change between two evaluations, in standard deviations.
+  /// @param half  of the change between them
+  template <class Visit>
+  void for_changes(const StudyRows& after, const StudyRows& before, double half,
+                   const Visit& visit) {
     for (const auto& [key, residual] : after.residual) {
-      const std::size_t sample = sample_of(key);
-      const Stack& stack = stacks_[sample];
       const Eigen::VectorXd change = (residual - before.residual.at(key)) / (2.0 * half);
       if (change.isZero(0.0)) continue;
-      Eigen::VectorXd& column = changes[{sample, apart ? std::get<2>(key) : 0}];
-      if (column.size() == 0) column.setZero(stack.jacobian.rows());
-      column.segment(stack.first.at(key), change.size()) += change;
+      Stack& stack = stacks_[sample_of(key)];
+      visit(key, stack, stack.first.at(key), change);
     }
-    for (auto& [of, column] : changes) (stacks_[of.first].*list).push_back(std::move(column));
+  }
+
+  /// Adds the score of one error to each sample, or of one to each of its places.
+  /// @param apart  features err independently; else all rows of a sample together
+  void add_scores(const StudyRows& after, const StudyRows& before, double half, bool apart) {
+    std::map<std::pair<std::size_t, int>, Eigen::VectorXd> scores;
+    for_changes(after, before, half,
+                [&](const FeatureKey& key, const Stack& stack, Eigen::Index first,
+                    const Eigen::VectorXd& change) {
+                  Eigen::VectorXd& score = scores[{sample_of(key), apart ? std::get<2>(key) : 0}];
+                  if (score.size() == 0) score.setZero(stack.effective.cols());
+                  score += stack.effective.middleRows(first, change.size()).transpose() * change;
+                });
+    for (const auto& [of, score] : scores) stacks_[of.first].scores += score * score.transpose();
+  }
+
+  /// Adds a motion of a target to each sample.
+  void add_motion(const StudyRows& after, const StudyRows& before, double half) {
+    std::map<std::size_t, Eigen::VectorXd> motions;
+    for_changes(after, before, half,
+                [&](const FeatureKey& key, const Stack& stack, Eigen::Index first,
+                    const Eigen::VectorXd& change) {
+                  Eigen::VectorXd& motion = motions[sample_of(key)];
+                  if (motion.size() == 0) motion.setZero(stack.jacobian.rows());
+                  motion.segment(first, change.size()) += change;
+                });
+    for (auto& [sample, motion] : motions) stacks_[sample].motions.push_back(std::move(motion));
   }
 
   void add_features() {
@@ -122,8 +147,8 @@ class DesignRows {
             if (error < errors.size()) of = errors[error];
             return of;
           };
-          add(changing_.rows(changing_.with(name, change, kHalf)),
-              changing_.rows(changing_.with(name, change, -kHalf)), kHalf, together);
+          add_scores(changing_.rows(changing_.with(name, change, kHalf)),
+                     changing_.rows(changing_.with(name, change, -kHalf)), kHalf, together);
         }
       }
     }
@@ -146,7 +171,7 @@ class DesignRows {
     };
     for (const std::string& joint : joints) {
       const double change = kHalf * noise_.joint;
-      if (change > 0.0) add(moved(joint, change), moved(joint, -change), kHalf, false);
+      if (change > 0.0) add_scores(moved(joint, change), moved(joint, -change), kHalf, false);
     }
   }
 
@@ -165,8 +190,8 @@ class DesignRows {
           if (k >= 3 && feature.rotation) of.rotation = feature.rotation->transpose() * axis;
           return std::optional(of);
         };
-        add(changing_.rows(changing_.with(name, change, kHalf)),
-            changing_.rows(changing_.with(name, change, -kHalf)), kHalf, false, &Stack::motions);
+        add_motion(changing_.rows(changing_.with(name, change, kHalf)),
+                   changing_.rows(changing_.with(name, change, -kHalf)), kHalf);
       }
     }
   }

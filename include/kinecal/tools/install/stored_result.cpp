@@ -66,6 +66,7 @@ void read_noise(const JsonValue& report, std::int64_t format, StoredResult& resu
     noise.components = static_cast<int>(entry.integer("components"));
     noise.freedom = entry.number("freedom");
     noise.sigma = entry.number("sigma");
+    if (entry.find("robust_sigma")) noise.robust = entry.number("robust_sigma");
     if (entry.find("own_sigma")) {
       noise.own = entry.number("own_sigma");
       noise.own_freedom = entry.number("own_freedom");

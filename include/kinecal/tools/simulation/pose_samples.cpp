@@ -45,6 +45,19 @@ namespace {
   return points;
 }
 
+/// Joints at zero, or at the nearest limit.
+[[nodiscard]] Positions at_rest(const Robot& robot) {
+  Positions positions;
+  for (const Joint& joint : robot.joints()) {
+    if (!moves(joint.type) || joint.mimic) continue;
+    const auto& limits = joint.limits;
+    positions[joint.name] = limits && limits->lower < limits->upper
+                                ? std::clamp(0.0, limits->lower, limits->upper)
+                                : 0.0;
+  }
+  return positions;
+}
+
 /// The models that a study simulates.
 struct StudiedModels {
   const ModelConfig* camera = nullptr;
@@ -107,17 +120,11 @@ class PoseSampling {
   /// The sample of a pose, or why it is missing.
   [[nodiscard]] std::pair<std::optional<Sample>, std::string> sample(
       const CapturePose& pose) const {
-    Sample sample;
-    Positions positions = at_rest();
-    for (std::size_t i = 0; i < pose.joint_names.size(); ++i) {
-      positions[pose.joint_names[i]] = pose.positions[i];
+    Sample sample = sample_in_pose(plan_.setup.robot, pose);
+    Positions positions;
+    for (std::size_t i = 0; i < sample.joint_names.size(); ++i) {
+      positions[sample.joint_names[i]] = sample.joint_positions[i];
     }
-    for (const auto& [joint, position] : positions) {
-      sample.joint_names.push_back(joint);
-      sample.joint_positions.push_back(position);
-      sample.joint_velocities.push_back(0.0);
-    }
-    sample.source = pose.source;
     Observation seen{models_.camera->name, {}, plan_.setup.camera.info},
         held{models_.chain->name, {}};
     const Pose<double> camera_T_points =
@@ -144,18 +151,6 @@ class PoseSampling {
   }
 
  private:
-  [[nodiscard]] Positions at_rest() const {
-    Positions positions;
-    for (const Joint& joint : plan_.setup.robot.joints()) {
-      if (!moves(joint.type) || joint.mimic) continue;
-      const auto& limits = joint.limits;
-      positions[joint.name] = limits && limits->lower < limits->upper
-                                  ? std::clamp(0.0, limits->lower, limits->upper)
-                                  : 0.0;
-    }
-    return positions;
-  }
-
   /// a_T_b of two links that do not move against each other.
   [[nodiscard]] Pose<double> rigid(const std::string& a, const std::string& b) const {
     for (const ChainJoint& joint : make_chain(plan_.setup.robot, a, b, {}).joints) {
@@ -164,7 +159,7 @@ class PoseSampling {
                        "', the frame of '" + models_.chain->name +
                        "'; put it there in the scene: target: {link: " + a + "}");
     }
-    return nominal_.pose(a, b, at_rest());
+    return nominal_.pose(a, b, at_rest(plan_.setup.robot));
   }
 
   [[nodiscard]] Eigen::Vector2d pixel(const Vector3<double>& p) const { return lens_.project(p); }
@@ -197,6 +192,17 @@ class PoseSampling {
 
 }  // namespace
 }  // namespace detail
+
+Sample sample_in_pose(const Robot& robot, const CapturePose& pose) {
+  Positions positions = detail::at_rest(robot);
+  for (std::size_t i = 0; i < pose.joint_names.size(); ++i) {
+    positions[pose.joint_names[i]] = pose.positions[i];
+  }
+  Sample sample = sample_at(positions);
+  sample.joint_velocities.assign(positions.size(), 0.0);
+  sample.source = pose.source;
+  return sample;
+}
 
 PoseSamples pose_samples(const SimulationPlan& plan, const Config& config,
                          const std::vector<CapturePose>& poses) {

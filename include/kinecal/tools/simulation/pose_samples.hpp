@@ -23,6 +23,10 @@ struct PoseSamples {
   ParameterTable values;
 };
 
+/// A pose at rest, as a sample without observations.
+/// @param pose  unnamed joints are at zero, or at the nearest limit
+[[nodiscard]] Sample sample_in_pose(const Robot& robot, const CapturePose& pose);
+
 /// The samples for an error block between a camera and the chain with the target.
 /// @param plan   with its camera and its target
 /// @param poses  unnamed joints are at zero, or at the nearest limit

@@ -384,7 +384,7 @@ void take_models(const Config& config, SimulationPlan& plan) {
       camera = model.frame;
       plan.setup.camera_name = model.name;
       plan.camera_type = model.type;
-    } else if (!is_camera && plan.target.link.empty()) {
+    } else if (!is_camera && !model.is_surface && plan.target.link.empty()) {
       plan.target.link = model.frame;
     }
   }

@@ -28,15 +28,11 @@ namespace {
 // floor under a robot may be many times farther than the noise, and is no fault of the cloud: no point counts more than six
 // times the noise.
 
-/// Whether a term compares points or edges with the surface of the robot.
-[[nodiscard]] bool is_of_surface(const AnyProblem& problem, int term) {
-  const std::string& type = problem.term(term).options.type;
-  return type == PointToMesh::kType || type == PointToOutline::kType;
-}
-
 [[nodiscard]] bool judges_wholes(const AnyProblem& problem) {
   bool clouds = false;
-  for (int t = 0; t < problem.num_terms(); ++t) clouds = clouds || is_of_surface(problem, t);
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    clouds = clouds || problem.term(t).is_of_surface();
+  }
   return clouds || !problem.sample_poses().empty();
 }
 
@@ -50,7 +46,7 @@ namespace {
   for (const RowBlock& block : fit.blocks) {
     const auto s = static_cast<std::size_t>(block.sample);
     const double noise = std::max(kRounding, sigma[static_cast<std::size_t>(block.term)]);
-    const double most = is_of_surface(problem, block.term) ? kMost * kMost : HUGE_VAL;
+    const double most = problem.term(block.term).is_of_surface() ? kMost * kMost : HUGE_VAL;
     sum[s] += (fit.residual.segment(block.first, block.size)
                    .cwiseAbs2()
                    .cwiseProduct(fit.loss.segment(block.first, block.size)) /
