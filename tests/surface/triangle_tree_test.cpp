@@ -72,6 +72,18 @@ TEST(TriangleTree, PointsOfATriangleAreNearestInAllRegionsAboutIt) {
   EXPECT_TRUE(tree.on_triangle({0.5, 0.2, -1.0}, 0).normal.isApprox(Vector3<double>::UnitZ()));
 }
 
+TEST(TriangleTree, IsNotNearerThanTheBoxAboutIt) {
+  const TriangleTree tree = tree_of(ball({0.1, -0.2, 0.3}, 0.4, 24, 0.2));
+  std::mt19937 engine(4);
+  for (int i = 0; i < 500; ++i) {
+    const Vector3<double> p = random_point(engine, 1.0);
+    EXPECT_LE(tree.away(p), tree.closest(p)->distance + 1e-12);
+  }
+  const TriangleTree side = tree_of(box({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0}));
+  EXPECT_NEAR(side.away({4.0, 0.5, -5.0}), 5.0, 1e-12);
+  EXPECT_EQ(side.away({0.5, -0.5, 0.9}), 0.0) << "inside";
+}
+
 TEST(TriangleTree, CastsRaysOnTheFirstOfAllTriangles) {
   const Shape shape = ball({0.0, 0.0, 0.0}, 0.4, 20, 0.25);
   const TriangleTree tree = tree_of(shape);

@@ -80,7 +80,7 @@ class SurfaceRounds {
                                             double gate) const {
     std::vector<Sample> all(samples.begin(), samples.end());
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      all = with_surface(blocks_[b].surface, blocks_[b].pair, all, hits[b], gate);
+      all = with_surface(blocks_[b].surface, blocks_[b].pair, std::move(all), hits[b], gate);
     }
     return all;
   }
@@ -105,7 +105,13 @@ class SurfaceRounds {
                                      std::vector<SurfaceHits> before) const {
     std::vector<SurfaceHits> hits =
         associated(empty, samples, values, manner.gate, std::move(before));
-    if (manner.only_front) drop_backs(empty, samples, values, hits);
+    for (SurfaceHits& of_block : hits) {
+      for (auto& of_sample : of_block) {
+        for (SurfaceHit& hit : of_sample) {
+          if (manner.only_front && hit.facing < 0.0) hit = {};
+        }
+      }
+    }
     std::vector<BeyondGate> beyond;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       BeyondGate& of_block = beyond.emplace_back(BeyondGate{blocks_[b].name, 0, manner.gate});
@@ -118,29 +124,6 @@ class SurfaceRounds {
     const std::vector<Sample> with_points = matched(samples, hits, manner.gate);
     return {step_.sums(empty, with_points, std::move(values), beyond, manner.held),
             std::move(hits)};
-  }
-
-  /// Points whose face looks away from the camera do not lie there.
-  void drop_backs(const AnyProblem& problem, std::span<const Sample> samples,
-                  const Eigen::VectorXd& values, std::vector<SurfaceHits>& hits) const {
-    const FeaturePlaces places(problem, values);
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const std::vector<MountedSensor>& sensors = problem.sensors();
-      const auto camera =
-          std::find_if(sensors.begin(), sensors.end(), [&](const MountedSensor& sensor) {
-            return sensor.mount().name == blocks_[b].pair.camera;
-          });
-      for (std::size_t s = 0; s < samples.size(); ++s) {
-        const Observation* seen = samples[s].observation(blocks_[b].pair.camera);
-        if (seen == nullptr) continue;
-        const std::vector<PlacedFeature> placed =
-            places.placed(static_cast<int>(camera - sensors.begin()), *seen, samples[s]);
-        for (std::size_t i = 0; i < placed.size(); ++i) {
-          SurfaceHit& hit = hits[b][s][i];
-          if (hit.link >= 0 && hit.face.dot(placed[i].origin - placed[i].point) < 0.0) hit = {};
-        }
-      }
-    }
   }
 
   const MatchedStep& step_;

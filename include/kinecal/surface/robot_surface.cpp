@@ -252,30 +252,21 @@ SurfaceHit RobotSurface::closest(std::span<const Pose<double>> base_T_links,
                                  const SurfaceHit& last) const {
   SurfaceHit hit;
   SurfacePoint best;
-  const auto in_link = [&](std::size_t i) {
-    return Vector3<double>(base_T_links[i].rotation.transpose() *
-                           (p_base - base_T_links[i].translation));
-  };
   const auto search = [&](std::size_t i, int guess) {
-    const auto found = links_[i].tree.closest(in_link(i), std::min(bound, best.distance), guess);
+    const Vector3<double> p =
+        base_T_links[i].rotation.transpose() * (p_base - base_T_links[i].translation);
+    const double least = std::min(bound, best.distance);
+    const TriangleTree& tree = links_[i].tree;
+    if (guess < 0 && tree.away(p) > least) return;
+    const auto found = tree.closest(p, least, guess);
     if (!found || found->distance >= best.distance) return;
     best = *found;
     hit.link = static_cast<int>(i);
   };
+  // What is found on one link bounds the search of the others.
   if (last.link >= 0) search(static_cast<std::size_t>(last.link), last.triangle);
-  // The others from the nearest ball about a link on: what is found bounds the next search.
-  std::vector<double> away(links_.size());
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    const TriangleTree& tree = links_[i].tree;
-    away[i] = static_cast<int>(i) == last.link
-                  ? std::numeric_limits<double>::infinity()
-                  : (base_T_links[i] * tree.center() - p_base).norm() - tree.radius();
-  }
-  for (std::size_t n = 0; n < links_.size(); ++n) {
-    const auto next = std::min_element(away.begin(), away.end());
-    if (!(*next < std::min(bound, best.distance))) break;
-    *next = std::numeric_limits<double>::infinity();
-    search(static_cast<std::size_t>(next - away.begin()), -1);
+    if (static_cast<int>(i) != last.link) search(i, -1);
   }
   if (hit.link < 0) return hit;
   const Pose<double>& base_T_link = base_T_links[static_cast<std::size_t>(hit.link)];

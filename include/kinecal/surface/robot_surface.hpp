@@ -42,6 +42,8 @@ struct SurfaceHit {
   Vector3<double> face =
       Vector3<double>::Zero();  ///< (3) outward normal of the triangle, in the base
   double distance = std::numeric_limits<double>::infinity();  ///< metres
+  double facing =
+      1.0;  ///< cosine between the face's normal and the line of sight to it; negative: from behind
 };
 
 /// The links of a robot that have a surface.

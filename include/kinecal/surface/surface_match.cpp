@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -116,7 +117,10 @@ void associate(const RobotSurface& surface, const SurfacePair& pair, const AnyPr
     for (const std::size_t i : detail::by_place(points, of_sample)) {
       if (of_sample[i].link < 0) of_sample[i] = near;
       of_sample[i] = surface.closest(base_T_links, points[i].point, bound, of_sample[i]);
-      if (of_sample[i].link >= 0) near = of_sample[i];
+      if (of_sample[i].link < 0) continue;
+      of_sample[i].facing =
+          of_sample[i].face.dot((points[i].origin - points[i].point).normalized());
+      near = of_sample[i];
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!points[i].seen) of_sample[i] = {};
@@ -133,12 +137,16 @@ void set_matched(const RobotSurface& surface, const SurfacePair& pair,
   const auto seen = std::find_if(all.begin(), all.end(),
                                  [&](const Observation& one) { return one.sensor == pair.camera; });
   if (seen == all.end()) return;
-  std::stable_sort(features.begin(), features.end(), [](const auto& one, const auto& other) {
-    return one.link < other.link;  // chains change seldom
+  std::vector<std::size_t> order(features.size());  // by link: chains change seldom
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t one, std::size_t other) {
+    return features[one].link < features[other].link;
   });
   Observation of_robot{.sensor = pair.robot, .features = {}};
+  of_robot.features.reserve(features.size());
   seen->features.clear();
-  for (SurfaceFeature& feature : features) {
+  for (const std::size_t i : order) {
+    SurfaceFeature& feature = features[i];
     feature.on_link.frame = surface.links()[static_cast<std::size_t>(feature.link)].name;
     seen->features.push_back(std::move(feature.seen));
     of_robot.features.push_back(std::move(feature.on_link));
@@ -147,22 +155,25 @@ void set_matched(const RobotSurface& surface, const SurfacePair& pair,
 }
 
 std::vector<Sample> with_surface(const RobotSurface& surface, const SurfacePair& pair,
-                                 std::span<const Sample> samples, const SurfaceHits& hits,
+                                 std::vector<Sample> samples, const SurfaceHits& hits,
                                  double gate) {
-  std::vector<Sample> matched(samples.begin(), samples.end());
-  for (std::size_t s = 0; s < matched.size(); ++s) {
+  for (std::size_t s = 0; s < samples.size(); ++s) {
     std::vector<SurfaceFeature> features;
-    for (std::size_t i = 0; i < hits[s].size(); ++i) {
-      const SurfaceHit& hit = hits[s][i];
-      if (hit.link < 0 || hit.distance > gate) continue;
-      const Feature& point = samples[s].observation(pair.camera)->features[i];
-      features.push_back({hit.link, point, {.frame = {}, .point = hit.point, .id = point.id}});
-      features.back().on_link.conditions = {
-          {"nx", hit.normal.x()}, {"ny", hit.normal.y()}, {"nz", hit.normal.z()}};
+    features.reserve(hits[s].size());
+    for (Observation& seen : samples[s].observations) {
+      if (seen.sensor != pair.camera) continue;
+      for (std::size_t i = 0; i < hits[s].size(); ++i) {
+        const SurfaceHit& hit = hits[s][i];
+        if (hit.link < 0 || hit.distance > gate) continue;
+        Feature on_link{.frame = {}, .point = hit.point, .id = seen.features[i].id};
+        on_link.conditions = {
+            {"nx", hit.normal.x()}, {"ny", hit.normal.y()}, {"nz", hit.normal.z()}};
+        features.push_back({hit.link, std::move(seen.features[i]), std::move(on_link)});
+      }
     }
-    set_matched(surface, pair, std::move(features), matched[s]);
+    set_matched(surface, pair, std::move(features), samples[s]);
   }
-  return matched;
+  return samples;
 }
 
 std::vector<Sample> with_fewer_points(std::span<const Sample> samples, const std::string& sensor,

@@ -60,8 +60,8 @@ void set_matched(const RobotSurface& surface, const SurfacePair& pair,
 /// @param hits  of all points of the camera
 /// @param gate  metres
 [[nodiscard]] std::vector<Sample> with_surface(const RobotSurface& surface, const SurfacePair& pair,
-                                               std::span<const Sample> samples,
-                                               const SurfaceHits& hits, double gate);
+                                               std::vector<Sample> samples, const SurfaceHits& hits,
+                                               double gate);
 
 /// The samples with at most so many points of a sensor each, evenly from its list.
 [[nodiscard]] std::vector<Sample> with_fewer_points(std::span<const Sample> samples,

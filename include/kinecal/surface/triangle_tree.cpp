@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -31,6 +32,13 @@ template <class L>
 template <class L>
 [[nodiscard]] L dot_of(const std::array<L, 3>& a, const std::array<L, 3>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Where a comparison of four lanes holds: a bit of each.
+using Held = int __attribute__((vector_size(16)));
+[[nodiscard]] inline unsigned bits_of(Held held) {
+  const Held bits = held & Held{1, 2, 4, 8};
+  return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
 }  // namespace
@@ -315,74 +323,80 @@ SurfacePoint TriangleTree::on_triangle(const Vector3<double>& p, int triangle) c
   return found;
 }
 
+double TriangleTree::away(const Vector3<double>& p) const {
+  return (facts_.low - p).cwiseMax(p - facts_.high).cwiseMax(0.0).norm();
+}
+
+TriangleTree::Lanes TriangleTree::squares(const std::array<Lanes, 3>& at, const Leaf& leaf) {
+  std::array<Lanes, 3> ap, off, bp, bc;
+  for (std::size_t k = 0; k < 3; ++k) ap[k] = at[k] - leaf.a[k];
+  const Lanes b = detail::dot_of(leaf.ab, ap), c = detail::dot_of(leaf.ac, ap);
+  const Lanes v = leaf.g00 * b + leaf.g01 * c, w = leaf.g01 * b + leaf.g11 * c;
+  for (std::size_t k = 0; k < 3; ++k) {
+    off[k] = ap[k] - v * leaf.ab[k] - w * leaf.ac[k];
+    bp[k] = ap[k] - leaf.ab[k];
+    bc[k] = leaf.ac[k] - leaf.ab[k];
+  }
+  const auto to_edge = [](const std::array<Lanes, 3>& edge, const std::array<Lanes, 3>& from,
+                          Lanes along) {
+    const Lanes t = detail::lower_of(detail::higher_of(along, Lanes{}), Lanes{} + 1.0F);
+    Lanes squared{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Lanes rest = from[k] - t * edge[k];
+      squared += rest * rest;
+    }
+    return squared;
+  };
+  const Lanes squared = detail::lower_of(
+      detail::lower_of(to_edge(leaf.ab, ap, b * leaf.ab_ab), to_edge(leaf.ac, ap, c * leaf.ac_ac)),
+      to_edge(bc, bp, detail::dot_of(bc, bp) * leaf.bc_bc));
+  const auto is_inside = (v >= 0.0F) & (w >= 0.0F) & (v + w <= 1.0F);
+  return is_inside ? detail::lower_of(squared, detail::dot_of(off, off)) : squared;
+}
+
 std::optional<SurfacePoint> TriangleTree::closest(const Vector3<double>& p, double bound,
                                                   int guess) const {
   if (nodes_.empty()) return std::nullopt;
-  int best = guess;
-  double start = bound;
-  SurfacePoint guessed;
-  if (guess >= 0) {
-    guessed = on_triangle(p, guess);
-    start = std::min(start, guessed.distance);
-  }
-  float least = std::min(1e30F, static_cast<float>(start * start) * detail::kSlack);
+  int best = -1;
+  float least = std::min(1e30F, static_cast<float>(bound * bound) * detail::kSlack);
   const std::array<Lanes, 3> at = {Lanes{} + static_cast<float>(p.x()),
                                    Lanes{} + static_cast<float>(p.y()),
                                    Lanes{} + static_cast<float>(p.z())};
+  const auto search_leaf = [&](int leaf) {
+    const Lanes squared = squares(at, leaves_[static_cast<std::size_t>(leaf)]);
+    for (unsigned bits = detail::bits_of(squared < least); bits != 0; bits &= bits - 1) {
+      const int lane = std::countr_zero(bits);
+      if (!(squared[lane] < least)) continue;
+      least = squared[lane];
+      best = kWide * leaf + lane;
+    }
+  };
+  const int first = guess < 0 ? -1 : guess / kWide;  // a leaf
+  if (first >= 0) search_leaf(first);
   Open open;
   open.add(0.0F, 0, 0);
   while (open.any()) {
     const auto [nearest, number] = open.take();
     if (nearest > least) continue;
-    if (number >= 0) {
-      const Node& node = nodes_[static_cast<std::size_t>(number)];
-      Lanes squared{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Lanes beyond = detail::higher_of(
-            detail::higher_of(node.low[k] - at[k], at[k] - node.high[k]), Lanes{});
-        squared += beyond * beyond;
-      }
-      const std::size_t below = open.count();
-      for (int c = 0; c < kWide; ++c) {
-        if (squared[c] <= least) {
-          open.add(squared[c], node.child[static_cast<std::size_t>(c)], below);
-        }
-      }
+    if (number < 0) {
+      if (~number != first) search_leaf(~number);
       continue;
     }
-    const Leaf& leaf = leaves_[static_cast<std::size_t>(~number)];
-    std::array<Lanes, 3> ap, off, bp, bc;
-    for (std::size_t k = 0; k < 3; ++k) ap[k] = at[k] - leaf.a[k];
-    const Lanes b = detail::dot_of(leaf.ab, ap), c = detail::dot_of(leaf.ac, ap);
-    const Lanes v = leaf.g00 * b + leaf.g01 * c, w = leaf.g01 * b + leaf.g11 * c;
+    const Node& node = nodes_[static_cast<std::size_t>(number)];
+    Lanes squared{};
     for (std::size_t k = 0; k < 3; ++k) {
-      off[k] = ap[k] - v * leaf.ab[k] - w * leaf.ac[k];
-      bp[k] = ap[k] - leaf.ab[k];
-      bc[k] = leaf.ac[k] - leaf.ab[k];
+      const Lanes beyond =
+          detail::higher_of(detail::higher_of(node.low[k] - at[k], at[k] - node.high[k]), Lanes{});
+      squared += beyond * beyond;
     }
-    const auto to_edge = [](const std::array<Lanes, 3>& edge, const std::array<Lanes, 3>& from,
-                            Lanes along) {
-      const Lanes t = detail::lower_of(detail::higher_of(along, Lanes{}), Lanes{} + 1.0F);
-      Lanes squared{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Lanes rest = from[k] - t * edge[k];
-        squared += rest * rest;
-      }
-      return squared;
-    };
-    Lanes squared = detail::lower_of(detail::lower_of(to_edge(leaf.ab, ap, b * leaf.ab_ab),
-                                                      to_edge(leaf.ac, ap, c * leaf.ac_ac)),
-                                     to_edge(bc, bp, detail::dot_of(bc, bp) * leaf.bc_bc));
-    const auto is_inside = (v >= 0.0F) & (w >= 0.0F) & (v + w <= 1.0F);
-    squared = is_inside ? detail::lower_of(squared, detail::dot_of(off, off)) : squared;
-    for (int lane = 0; lane < kWide; ++lane) {
-      if (!(squared[lane] < least)) continue;
-      least = squared[lane];
-      best = kWide * ~number + lane;
+    const std::size_t below = open.count();
+    for (unsigned bits = detail::bits_of(squared <= least); bits != 0; bits &= bits - 1) {
+      const int c = std::countr_zero(bits);
+      open.add(squared[c], node.child[static_cast<std::size_t>(c)], below);
     }
   }
   if (best < 0) return std::nullopt;
-  const SurfacePoint found = best == guess ? guessed : on_triangle(p, best);
+  const SurfacePoint found = on_triangle(p, best);
   if (found.distance > bound) return std::nullopt;
   return found;
 }

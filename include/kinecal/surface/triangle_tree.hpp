@@ -55,11 +55,10 @@ class TriangleTree {
   [[nodiscard]] const std::array<Vector3<double>, 3>& corners(int triangle) const {
     return triangles_[static_cast<std::size_t>(triangle)].corners;
   }
-  /// The middle of the tree's box and the distance from there to its corners, metres.
-  /// @{
+  /// The middle of the box about all triangles, metres.
   [[nodiscard]] Vector3<double> center() const { return 0.5 * (facts_.low + facts_.high); }
-  [[nodiscard]] double radius() const { return 0.5 * (facts_.high - facts_.low).norm(); }
-  /// @}
+  /// How far a point is from the box about all triangles, metres; the surface is no nearer.
+  [[nodiscard]] double away(const Vector3<double>& p) const;
 
   /// The nearest point of the surface.
   /// @param p      (3) metres
@@ -102,6 +101,10 @@ class TriangleTree {
   struct Box;
   class Build;
   class Open;
+
+  /// Squared distances of a point from the triangles of a leaf.
+  /// @param at  (3) the same in all lanes
+  [[nodiscard]] static Lanes squares(const std::array<Lanes, 3>& at, const Leaf& leaf);
 
   void find_facts(std::span<const std::array<std::uint32_t, 3>> corners);
 

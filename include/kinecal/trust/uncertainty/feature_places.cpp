@@ -52,8 +52,10 @@ std::vector<PlacedFeature> FeaturePlaces::placed(int sensor, const Observation& 
   const std::vector<double> settings = of.sensor().settings(seen), own = of.own_values(values_);
   std::map<std::string, Pose<double>> frames;
   std::vector<PlacedFeature> all;
+  all.reserve(seen.features.size());
+  auto frame = frames.end();
   for (const Feature& feature : seen.features) {
-    auto frame = frames.find(feature.frame);
+    if (frame == frames.end() || frame->first != feature.frame) frame = frames.find(feature.frame);
     if (frame == frames.end()) {
       frame = frames.emplace(feature.frame, base_T_frame(sensor, feature.frame, sample)).first;
     }
