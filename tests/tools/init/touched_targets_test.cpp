@@ -22,9 +22,9 @@
 namespace kinecal {
 namespace {
 
-constexpr InitTarget kTouched[] = {InitTarget::point,   InitTarget::sockets, InitTarget::plane,
-                                   InitTarget::line,    InitTarget::sphere,  InitTarget::bar,
-                                   InitTarget::distance};
+constexpr InitTarget kTouched[] = {InitTarget::point,    InitTarget::sockets, InitTarget::plane,
+                                   InitTarget::line,     InitTarget::sphere,  InitTarget::bar,
+                                   InitTarget::distance, InitTarget::gravity};
 
 /// An arm of the examples, whose zeros are wrong, with a tip that is not in its URDF.
 class TouchingArm {
@@ -50,6 +50,7 @@ class TouchingArm {
     touched.sensor_frame = "place";
     touched.contact = target == InitTarget::plane      ? Contact::plane
                       : target == InitTarget::distance ? Contact::plane
+                      : target == InitTarget::gravity  ? Contact::gravity
                       : target == InitTarget::line     ? Contact::line
                       : target == InitTarget::sphere   ? Contact::sphere
                       : target == InitTarget::bar      ? Contact::sphere
@@ -89,6 +90,19 @@ class TouchingArm {
       for (const auto& [joint, position] : pose) {
         sample.joint_names.push_back(joint);
         sample.joint_positions.push_back(position - wrong_.at(joint) + jitter(random));
+      }
+      if (target == InitTarget::gravity) {
+        const Pose<double> hand = forward_kinematics(
+            make_chain(robot_, named.base, arm_), [&](const std::string& j) { return pose.at(j); });
+        const Matrix3<double> turned = hand.rotation * exp(Vector3<double>(0.4, -0.9, 1.3));
+        // A base that leans, and a scale that is 1 % off.
+        const Vector3<double> read = turned.transpose() * Vector3<double>(0.2, -0.1, 9.9);
+        for (int k = 0; k < 3; ++k) {
+          sample.conditions[std::string("a") + "xyz"[k]] = read(k) + 20.0 * jitter(random);
+        }
+        sample.observations = {
+            {"arm", {{named.target_frame, Vector3<double>::Zero(), Matrix3<double>::Identity()}}}};
+        continue;
       }
       const std::string& place = named.places.at(number++ % named.places.size());
       Feature held{place, Vector3<double>::Zero()};

@@ -114,6 +114,8 @@ class GeneratedPoses {
         return {true, true, false, true, true, false};
       case Contact::plane:
         return {false, false, true, true, true, false};
+      case Contact::gravity:
+        return {};
       case Contact::point:
       case Contact::sphere:
         break;
@@ -182,6 +184,7 @@ class GeneratedPoses {
       case Contact::sphere:
         return Eigen::VectorXd::Constant(1, p.norm());
       case Contact::none:
+      case Contact::gravity:
       case Contact::point:
         break;
     }
@@ -199,6 +202,13 @@ class GeneratedPoses {
       if (socket >= 0 && socket_of(i) != static_cast<std::size_t>(socket)) {
         of_pose.erase(measured_.sensor_frame);
       }
+      if (measured_.contact == Contact::gravity) {
+        // What it reads in this pose, in the base as the offsets have it; the correction is that of gravity.
+        const Matrix3<double> before = seen_from(poses_[i], {}, {}).rotation;
+        all.segment(static_cast<Eigen::Index>(i) * rows, rows) =
+            seen_from(poses_[i], offsets, of_pose).rotation * before.row(2).transpose();
+        continue;
+      }
       const Pose<double> sensor_T_target = seen_from(poses_[i], offsets, of_pose);
       const double distance = distances_.empty() ? 0.0 : distances_[i];
       all.segment(static_cast<Eigen::Index>(i) * rows, rows) =
@@ -213,6 +223,7 @@ class GeneratedPoses {
     constexpr int kTries = 3000;
     constexpr double kRadius = 0.2, kApart = 0.1;  // metres
     std::mt19937_64 random(1);
+    if (measured_.contact == Contact::gravity) sockets_ = {Vector3<double>::Zero()};
     const auto random_pose = [&] {
       NamedNumbers pose;
       for (const std::string& joint : drives)
@@ -222,6 +233,9 @@ class GeneratedPoses {
     const auto tip_in_base = [&](const NamedNumbers& pose) {
       return (end_of(to_target_, pose, {}, {}) * link_T_target_).translation;
     };
+    while (measured_.contact == Contact::gravity && poses_.size() < kPoses) {
+      poses_.push_back(random_pose());
+    }
     for (int i = 0; i < kTries && poses_.empty(); ++i) {
       // A contact in the middle of what random poses reach, not at its border.
       Vector3<double> middle = Vector3<double>::Zero();
@@ -510,6 +524,11 @@ OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
   OffsetEffects effects;
   detail::Span span;
   detail::add_all(span, poses.camera_columns());
+  for (Eigen::Index axis = 0; axis < 3 && measured.contact == Contact::gravity; ++axis) {
+    Eigen::VectorXd of_gravity = Eigen::VectorXd::Zero(poses.measured({}, {}).size());
+    for (Eigen::Index at = axis; at < of_gravity.size(); at += 3) of_gravity(at) = 1.0;
+    span.add(of_gravity);
+  }
   const bool free_radius = measured.contact == Contact::sphere && !measured.radius_known;
   if (free_radius) span.add(Eigen::VectorXd::Ones(poses.measured({}, {}).size()));
   for (const detail::FrameSpan& frame : free) {

@@ -29,7 +29,8 @@
 namespace kinecal {
 
 /// What a tip touches: in its own frame, the origin, the z axis, the plane z = 0, or a sphere about the origin.
-enum class Contact { none, point, line, plane, sphere };
+/// Or gravity, as an accelerometer on the arm reads it.
+enum class Contact { none, point, line, plane, sphere, gravity };
 
 /// A target and the sensor that measures its points; or a tip on an arm and what it touches, fixed to `sensor`.
 struct MeasuredTarget {
