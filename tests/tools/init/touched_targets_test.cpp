@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
 #include <cmath>
 #include <iostream>
 #include <map>
@@ -83,7 +84,7 @@ class TouchingArm {
     }
     std::normal_distribution<double> jitter(0.0, noise / 0.5);  // radians, half a metre away
     std::size_t number = 0;
-    const TouchingPoses poses = touching_poses(robot_, touched);
+    const TouchingPoses poses = touching_poses(robot_, touched, 60, 1);
     for (const auto& pose : poses.positions) {
       const double distance = poses.distances.empty() ? 0.0 : poses.distances.at(number);
       Sample& sample = all.emplace_back();
@@ -173,6 +174,56 @@ TEST_P(TouchedTarget, FindsTheZerosWithPlusMinusThatCover) {
   std::cout << fmt::format("{}: error over its ±, rms {:.2f} of {}\n", to_string(GetParam()),
                            std::sqrt(sum / count), count);
   EXPECT_LE(sum / count, 2.5);
+}
+
+/// The tool's centre point from few poses: ± that cover; beside it the formula of pendants, the least-squares solution of
+/// R t - c = -p, which gives no ±.
+TEST(TouchedTargets, TheToolsCenterPointHasPlusMinusThatCover) {
+  std::cout << "poses  error (mm)  pendant's (mm)  error / ±\n";
+  TouchingArm arm = six_joints();
+  const MeasuredTarget touched = arm.measured(InitTarget::tool);
+  const RuntimeChain to_hand = make_chain(arm.robot(), touched.base, touched.target);
+  for (const std::size_t poses : {4u, 10u, 40u}) {
+    double sum = 0.0, off = 0.0, of_pendant = 0.0;
+    const int count = test::repetitions(200, 30);
+    for (int seed = 1; seed <= count; ++seed) {
+      std::vector<Sample> samples =
+          arm.samples(InitTarget::tool, static_cast<unsigned>(seed), 2e-4);
+      samples.resize(poses);
+      Eigen::MatrixXd left(3 * poses, 6);
+      Eigen::VectorXd right(3 * poses);
+      for (std::size_t i = 0; i < poses; ++i) {
+        for (std::size_t j = 0; j < samples[i].joint_names.size();
+             ++j) {  // the joints are right here
+          samples[i].joint_positions[j] += arm.wrong().at(samples[i].joint_names[j]);
+        }
+        const Pose<double> hand = forward_kinematics(
+            to_hand, [&](const std::string& joint) { return *samples[i].position(joint); });
+        const auto row = static_cast<Eigen::Index>(3 * i);
+        left.block<3, 3>(row, 0) = hand.rotation;
+        left.block<3, 3>(row, 3) = -Matrix3<double>::Identity();
+        right.segment<3>(row) = -hand.translation;
+      }
+      const Vector3<double> pendant = left.householderQr().solve(right).head<3>();
+      const CalibratedRobot found = arm.calibrated(InitTarget::tool, samples);
+      const ParameterTable& table = found.result.table;
+      const Vector3<double> truth = 0.1 * Vector3<double>(0.5, -0.6, 0.7);
+      of_pendant += (pendant - truth).squaredNorm();
+      for (int k = 0; k < 3; ++k) {
+        const std::string name = std::string("tip_") + "xyz"[k];
+        const double error = table[name].value - truth(k);
+        const auto deviation = found.assessments.back().deviation(table.find(name));
+        ASSERT_TRUE(deviation.has_value());
+        off += error * error;
+        sum += error * error / (*deviation * *deviation);
+      }
+    }
+    std::cout << fmt::format("{:5}  {:10.3f}  {:14.3f}  {:9.2f}\n", poses,
+                             1e3 * std::sqrt(off / count), 1e3 * std::sqrt(of_pendant / count),
+                             std::sqrt(sum / (3.0 * count)));
+    EXPECT_LE(std::sqrt(off), 1.1 * std::sqrt(of_pendant));
+    EXPECT_LE(sum / (3.0 * count), poses == 4 ? 4.0 : 2.0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, TouchedTarget, testing::ValuesIn(kTouched),
