@@ -388,7 +388,7 @@ std::optional<SurfacePoint> TriangleTree::closest(const Vector3<double>& p, doub
       }
       unsigned bits = detail::bits_of(squared <= least);
       if (bits == 0) break;
-      if (!std::has_single_bit(bits)) {
+      if ((bits & (bits - 1)) != 0) {
         const std::size_t below = open.count();
         for (; bits != 0; bits &= bits - 1) {
           const int c = std::countr_zero(bits);
