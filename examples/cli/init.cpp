@@ -193,6 +193,7 @@ void answer_names(const Robot& robot, InitOptions& options, InitAnswers& answers
     return ask_unless_given(given, question, [&](const std::string& names) {
       return why_not([&](Diagnostics& d) {
         for (const std::string& name : split(names)) {
+          if (is_touched(answers.target) && robot.has_link(name)) continue;
           check_init_frame(robot, question.option, name, d);
         }
       });
@@ -248,6 +249,7 @@ void check_given(const Robot& robot, const InitOptions& options) {
       check_init_link(robot, option, link, diagnostics);
   }
   for (const std::string& frame : split(options.target_frame)) {
+    if (robot.has_link(frame)) continue;  // may be a tip; else initial_config() reports it
     check_init_frame(robot, "--target-frame", frame, diagnostics);
   }
   if (!options.tracker_frame.empty()) {
@@ -329,8 +331,8 @@ std::vector<Sample> read_from(const Robot& robot, const InitOptions& options) {
     const std::optional<InitTarget> target = given_target(robot, options);
     const bool has_sockets = target ? *target == InitTarget::sockets : options.length.has_value();
     const std::string sockets = has_sockets ? sockets_file(options, columns, table) : "";
-    write_output(columns,
-                 proposed_columns(robot, detail::read_text_file(table), table, target, sockets));
+    write_output(columns, proposed_columns(robot, detail::read_text_file(table), table, target,
+                                           sockets, options.target_frame));
     say("wrote {}\n  what each column of {} means, as far as names and values tell: look at it\n",
         columns, table);
   }

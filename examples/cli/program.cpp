@@ -404,7 +404,9 @@ void add_init(CLI::App& command, InitOptions& options) {
           "--target-frame", options.target_frame,
           "frame_id of the board's corners or of the reflector in the samples (several reflectors: "
           "with commas), not a link of "
-          "the URDF; default: 'checkerboard' or 'smr'")
+          "the URDF; default: 'checkerboard' or 'smr'.  Of a tip that touches: its link, if the "
+          "URDF "
+          "has one")
       ->type_name("NAME");
   command
       .add_option("--tracker-frame", options.tracker_frame,

@@ -55,6 +55,22 @@ TEST_F(Assemble, APriorOnWhatIsNotFreeHasNoEffect) {
   }
 }
 
+/// Two components of a rotation vector are not two angles; of a plane that is touched, the third one has no effect.
+TEST_F(Assemble, TwoOfThreeRotationsOfAJointAreAcceptedWithAWarning) {
+  const auto with = [&](const std::string& axes) {
+    return assembled("free_frames:\n", "free_frames:\n - {name: turn_z, " + axes + "}\n");
+  };
+  const Diagnostics two = with("roll: true, yaw: true");
+  EXPECT_THAT(two.errors, IsEmpty());
+  EXPECT_THAT(two.warnings, ElementsAre(HasSubstr(
+                                "free frame 'turn_z': roll and yaw are free and pitch is not: the "
+                                "free parameters are two components of a rotation vector")));
+  EXPECT_THAT(with("roll: true").warnings, IsEmpty());
+  EXPECT_THAT(with("roll: true, pitch: true, yaw: true").warnings, IsEmpty());
+  EXPECT_THAT(assembled(kBoardFree, " - {name: board, x: true, roll: true, yaw: true}\n").warnings,
+              IsEmpty());
+}
+
 TEST_F(Assemble, APriorOnATargetThatIsNotFreeHasNoEffect) {
   const Diagnostics found = assembled({{kBoardFree, "fixed_frames:\n - {name: board, x: 0.1}\n"},
                                        {"error_blocks:\n",

@@ -594,17 +594,6 @@ TEST(ReadConfig, FrameWithoutAFreeAxisIsAWarning) {
               ElementsAre("calibrate.yaml:8: free frame 'board': no axis is free"));
 }
 
-TEST(ReadConfig, TwoOfThreeRotationsAreAcceptedWithAWarning) {
-  const ReadConfig two = read(with(kRos1, "x: true", "roll: true, yaw: true"));
-  EXPECT_THAT(two.errors, IsEmpty());
-  ASSERT_EQ(two.warnings.size(), 1u);
-  EXPECT_THAT(two.warnings[0],
-              HasSubstr("calibrate.yaml:8: free frame 'board': roll and yaw are free and pitch is "
-                        "not: the free parameters are two components of a rotation vector"));
-  EXPECT_THAT(warnings(with(kRos1, "x: true", "roll: true")), IsEmpty());
-  EXPECT_THAT(warnings(with(kRos1, "x: true", "roll: true, pitch: true, yaw: true")), IsEmpty());
-}
-
 const std::string kInitial = "free_frames_initial_values:\n - {name: board, x: 0.5, z: -1e-3}\n";
 
 TEST(ReadConfig, InitialValuesOfFramesAreRead) {

@@ -125,7 +125,8 @@ TEST_F(Touched, SocketsAndALengthFindTheGeometryOfThePanda) {
   }
   write("front.csv", table + "\n");
   const std::string urdf = "--urdf " + data + "panda.urdf ";
-  const Outcome made = kinecal("init " + urdf + "--from front.csv --length 0.05 --arm ball_link");
+  const Outcome made =
+      kinecal("init " + urdf + "--from front.csv --length 0.05 --target-frame ball_link");
   ASSERT_EQ(made.code, 0) << made.err;
   EXPECT_THAT(made.out, HasSubstr("from the samples: target sockets"));
   ASSERT_EQ(kinecal("convert front.csv samples.yaml --columns columns.yaml").code, 0);

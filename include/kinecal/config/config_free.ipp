@@ -49,22 +49,11 @@ inline void check_free_parameters(const ConfigMap& map, StepConfig& step) {
   });
 }
 
-/// Warns of a frame without a free axis, and of a frame with two of three rotations free.
+/// Warns of a frame without a free axis.
 inline void check_free_axes(const ConfigMap& map, const FreeFrameConfig& frame) {
   if (std::find(frame.axes.begin(), frame.axes.end(), true) == frame.axes.end()) {
     map.warning(frame.place, "no axis is free");
   }
-  if (std::count(frame.axes.begin() + 3, frame.axes.end(), true) != 2) return;
-  std::string free, held;
-  for (std::size_t i = 3; i < 6; ++i) {
-    if (frame.axes[i]) free += (free.empty() ? "" : " and ") + std::string(kConfigAxes[i]);
-    if (!frame.axes[i]) held = kConfigAxes[i];
-  }
-  map.warning(frame.place,
-              free + " are free and " + held +
-                  " is not: the free parameters are two components of a rotation vector, not " +
-                  free + " themselves, and large values change " + held +
-                  " as well; free one rotation or all three");
 }
 
 [[nodiscard]] inline FreeFrameConfig read_free_frame(ConfigItem& item) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/parameters/joint_models/joint_models.hpp"
@@ -85,12 +86,33 @@ inline void check_fixed_frame(const FreeFrameConfig& frame, const Robot& robot,
 }
 
 /// Reports a free frame that is neither a joint nor a virtual frame of recorded features.
+/// Warns of a joint's frame with two of three rotations free.  Of what a sample is compared with, such as a plane, the third
+/// may have no effect.
+inline void check_two_rotations(const FreeFrameConfig& frame, Diagnostics& diagnostics) {
+  if (std::count(frame.axes.begin() + 3, frame.axes.end(), true) != 2) return;
+  constexpr std::array<const char*, 3> kRotations = {"roll", "pitch", "yaw"};
+  std::string free, held;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string name = kRotations[i];
+    (frame.axes[3 + i] ? free : held) += (frame.axes[3 + i] && !free.empty() ? " and " : "") + name;
+  }
+  diagnostics.warning(
+      frame.place,
+      fmt::format(
+          "free frame '{}': {} are free and {} is not: the free parameters are two components "
+          "of a rotation vector, not {} themselves, and large values change {} as well; free "
+          "one rotation or all three",
+          frame.name, free, held, free, held));
+}
+
 inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
                         const std::set<std::string>& recorded, bool have_samples,
                         Diagnostics& diagnostics) {
   if (frame.is_fixed) return check_fixed_frame(frame, robot, recorded, have_samples, diagnostics);
   if (robot.has_joint(frame.name)) {
-    if (robot.joint(frame.name).type != JointType::floating) return;
+    if (robot.joint(frame.name).type != JointType::floating) {
+      return check_two_rotations(frame, diagnostics);
+    }
     const std::string wrong = "' is a floating joint, whose pose is measured; free a fixed joint";
     diagnostics.error(frame.place, "free frame '" + frame.name + wrong + " before or after it");
     return;

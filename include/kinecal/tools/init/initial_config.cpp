@@ -467,6 +467,17 @@ void free_places(InitPlan& plan, const InitAnswers& answers) {
   }
 }
 
+/// The joint that holds a tip which is a link of the URDF.
+/// @throws InputError  if that joint moves
+[[nodiscard]] const Joint& joint_of_tip(const Robot& robot, const std::string& link) {
+  const Joint* joint = robot.parent_joint(link);
+  if (joint != nullptr && joint->type == JointType::fixed) return *joint;
+  throw InputError(fmt::format(
+      "--target-frame: link '{}' is not fixed to another one, so it is no tip; choose a link "
+      "behind a fixed joint, or a name that the URDF does not have",
+      link));
+}
+
 /// Frees the zeros that a touch shows.
 /// @throws InputError  if it shows none
 void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers& answers) {
@@ -522,13 +533,16 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
                     answers.carrier == answers.base ? "--base" : "--touched-link"));
   }
   if (target == InitTarget::gravity) return plan_gravity(robot, answers);
-  const std::string tip = answers.target_frame;
+  const bool is_link = robot.has_link(answers.target_frame);
+  const std::string tip =
+      is_link ? joint_of_tip(robot, answers.target_frame).name : answers.target_frame;
   const bool is_pose = contact_of(target) == Contact::plane || contact_of(target) == Contact::line;
-  add_chain_model(plan,
-                  target == InitTarget::distance
-                      ? "The arm: the plane is at point (0, 0, distance) of frame " + tip + "."
-                      : "The arm: the tip is point (0, 0, 0) of frame " + tip + ".",
-                  holder_of(answers), answers.arm);
+  add_chain_model(
+      plan,
+      target == InitTarget::distance
+          ? "The arm: the plane is at point (0, 0, distance) of frame " + answers.target_frame + "."
+          : "The arm: the tip is point (0, 0, 0) of frame " + answers.target_frame + ".",
+      holder_of(answers), answers.arm);
   add_chain_model(plan, "What it touches, which stands still in this link.", tracker_of(answers),
                   answers.carrier);
   if (is_pose) plan.models.back().fields.front().second = "chain6d";
@@ -542,18 +556,21 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
   if (target == InitTarget::distance) {
     free_axes(plan, tip,
               "Where the sensor is in link " + name_to_yaml(answers.arm) +
-                  " and along which z it measures; the URDF does not contain this frame.",
+                  " and along which z it measures.",
               {true, true, true, true, true, false});
   } else {
-    free_frame(plan, tip,
-               "Where the tip is in link " + name_to_yaml(answers.arm) +
-                   "; a point has no rotation.  The URDF does not contain this frame.",
-               true);
+    free_frame(
+        plan, tip,
+        is_link ? "Where the tip is, by this joint of the URDF; a point has no rotation."
+                : "Where the tip is in link " + name_to_yaml(answers.arm) +
+                      "; a point has no rotation.  The URDF does not contain this frame: name the "
+                      "link of a tip that is in it with --target-frame.",
+        true);
   }
   for (const std::string& place : answers.places) add_initial_value(plan, place, "");
   plan.initial_values.front().why =
       "Zeros are no guess: kinecal searches for what the URDF does not have.";
-  add_initial_value(plan, tip, "");
+  if (!is_link) add_initial_value(plan, tip, "");
   if (contact_of(target) == Contact::sphere) {
     for (std::size_t i = 0; i < 3; ++i) {
       plan.initial_values.front().fields[i].second =
@@ -756,7 +773,8 @@ void check_answers(const Robot& robot, const InitAnswers& answers) {
     check_init_camera_name("--robot-camera-name", answers.camera_name, diagnostics);
   }
   if (needs_target_frame(target)) {
-    check_init_frame(robot, "--target-frame", answers.target_frame, diagnostics);
+    const bool is_tip = is_touched(target) && robot.has_link(answers.target_frame);
+    if (!is_tip) check_init_frame(robot, "--target-frame", answers.target_frame, diagnostics);
     check_reflectors(robot, answers, diagnostics);
   }
   if (target == InitTarget::tracker) {

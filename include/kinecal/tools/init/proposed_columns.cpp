@@ -588,9 +588,11 @@ struct PointColumns {
 /// @throws InputError  if sockets have no names
 [[nodiscard]] std::string touched_text(const Robot& robot, const ReadTable& table,
                                        InitTarget target, const std::string& file,
-                                       const std::string& sockets_file) {
+                                       const std::string& sockets_file,
+                                       const std::string& tip_frame) {
   InitAnswers answers;
   answers.target = target;
+  answers.target_frame = tip_frame;
   if (!sockets_file.empty()) answers.layout = {Vector3<double>::Zero()};
   answers = with_proposals(robot, answers);
   if (target == InitTarget::gravity) {
@@ -674,7 +676,8 @@ std::string sockets_at_distance(std::string_view text, const std::string& file, 
 }
 
 std::string proposed_columns(const Robot& robot, std::string_view text, const std::string& file,
-                             std::optional<InitTarget> given, const std::string& sockets_file) {
+                             std::optional<InitTarget> given, const std::string& sockets_file,
+                             const std::string& tip) {
   using namespace detail;
   const ReadTable table = read_table(text, file);
   const std::optional<InitTarget> touched = touched_target(table, given, file);
@@ -713,7 +716,7 @@ std::string proposed_columns(const Robot& robot, std::string_view text, const st
              separators.at(table.separator), table.header) +
          turning + sliding + velocities_text(robot, table, velocities, true, turning) +
          velocities_text(robot, table, velocities, false, sliding) +
-         (touched ? touched_text(robot, table, *touched, file, sockets_file)
+         (touched ? touched_text(robot, table, *touched, file, sockets_file, tip)
                   : observations_text(robot, table, points)) +
          (unused.empty() ? "" : "\n# Not used: " + unused + "\n");
 }

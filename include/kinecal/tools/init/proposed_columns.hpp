@@ -27,11 +27,13 @@ inline constexpr const char* kProposedColumnsMark = "# Columns for 'kinecal init
 /// @param file   its name, in messages
 /// @param target  what the tip touches, or a tracker; nullopt: by the columns
 /// @param sockets_file  of sockets with known places, with the columns socket, x, y, z in metres; empty: not known
+/// @param tip           frame of the tip, or the link that it is; empty: proposed
 /// @throws InputError  "file: ...": what neither names nor values tell
 [[nodiscard]] std::string proposed_columns(const Robot& robot, std::string_view table,
                                            const std::string& file,
                                            std::optional<InitTarget> target = {},
-                                           const std::string& sockets_file = {});
+                                           const std::string& sockets_file = {},
+                                           const std::string& tip = {});
 
 /// The table of two sockets whose distance is known, for a table of joints that names the one of each row.
 /// @param length  metres

@@ -193,6 +193,9 @@ InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
     if (answer.empty()) answer = proposal;
   };
   const InitTarget target = answers.target;
+  if (is_touched(target) && robot.has_link(answers.target_frame)) {
+    propose(answers.arm, answers.target_frame);
+  }
   const std::string& end = needs_arm(target) ? answers.arm : answers.camera;
   if (robot.has_link(end)) propose(answers.base, propose_base(robot, end));
   if (target == InitTarget::tracker) {

@@ -91,7 +91,9 @@ std::vector<Sample> touched_samples(const Robot& robot, const ConfiguredTouch& t
       sample.joint_names.push_back(joint);
       sample.joint_positions.push_back(position);
     }
-    Feature tip{touch.tip, Vector3<double>::Zero()};
+    // A tip that the URDF has is a link; its joint is free.
+    Feature tip{robot.has_joint(touch.tip) ? touch.target.target : touch.tip,
+                Vector3<double>::Zero()};
     if (contact == Contact::gravity) {
       tip.rotation = Matrix3<double>::Identity();
       const Pose<double> hand = forward_kinematics(
