@@ -32,7 +32,7 @@ class Touched : public test::ProgramTest {
 };
 
 TEST_F(Touched, TheTableOfAConeCalibratesAsTheManualSays) {
-  const Outcome made = kinecal("init --urdf ur5e.urdf --from cone.csv --target point");
+  const Outcome made = kinecal("init --urdf ur5e.urdf --from cone.csv --target point --arm tool0");
   ASSERT_EQ(made.code, 0) << made.err;
   EXPECT_THAT(made.out, HasSubstr("from the samples: target point; arm tool0"));
   ASSERT_EQ(kinecal("convert cone.csv samples.yaml --columns columns.yaml").code, 0);
@@ -89,7 +89,7 @@ TEST_F(Touched, FourPosesGiveTheToolsCenterPoint) {
   std::size_t end = 0;
   for (int line = 0; line < 7; ++line) end = table.find('\n', end) + 1;
   write("cone.csv", table.substr(0, end));
-  ASSERT_EQ(kinecal("init --urdf ur5e.urdf --from cone.csv --target tool").code, 0);
+  ASSERT_EQ(kinecal("init --urdf ur5e.urdf --from cone.csv --target tool --arm tool0").code, 0);
   EXPECT_THAT(read("calibrate.yaml"), Not(HasSubstr("free_params:")));
   ASSERT_EQ(kinecal("convert cone.csv samples.yaml --columns columns.yaml").code, 0);
   const Outcome done = kinecal(

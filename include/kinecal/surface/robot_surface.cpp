@@ -250,13 +250,26 @@ int RobotSurface::find(const std::string& link) const {
 SurfaceHit RobotSurface::closest(std::span<const Pose<double>> base_T_links,
                                  const Vector3<double>& p_base, double bound,
                                  const SurfaceHit& last) const {
+  return PosedSurface(*this, base_T_links).closest(p_base, bound, last);
+}
+
+PosedSurface::PosedSurface(const RobotSurface& surface, std::span<const Pose<double>> base_T_links)
+    : surface_(surface), poses_(base_T_links) {
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    const TriangleTree& tree = surface.links()[i].tree;
+    balls_.push_back({poses_[i] * tree.center(), tree.radius()});
+  }
+}
+
+SurfaceHit PosedSurface::closest(const Vector3<double>& p_base, double bound,
+                                 const SurfaceHit& last) const {
   SurfaceHit hit;
   SurfacePoint best;
   const auto search = [&](std::size_t i, int guess) {
-    const Vector3<double> p =
-        base_T_links[i].rotation.transpose() * (p_base - base_T_links[i].translation);
-    const double least = std::min(bound, best.distance);
-    const TriangleTree& tree = links_[i].tree;
+    const double least = std::min(bound, best.distance), reach = least + balls_[i].radius;
+    if (guess < 0 && (p_base - balls_[i].middle).squaredNorm() > reach * reach) return;
+    const Vector3<double> p = poses_[i].rotation.transpose() * (p_base - poses_[i].translation);
+    const TriangleTree& tree = surface_.links()[i].tree;
     if (guess < 0 && tree.away(p) > least) return;
     const auto found = tree.closest(p, least, guess);
     if (!found || found->distance >= best.distance) return;
@@ -265,11 +278,11 @@ SurfaceHit RobotSurface::closest(std::span<const Pose<double>> base_T_links,
   };
   // What is found on one link bounds the search of the others.
   if (last.link >= 0) search(static_cast<std::size_t>(last.link), last.triangle);
-  for (std::size_t i = 0; i < links_.size(); ++i) {
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
     if (static_cast<int>(i) != last.link) search(i, -1);
   }
   if (hit.link < 0) return hit;
-  const Pose<double>& base_T_link = base_T_links[static_cast<std::size_t>(hit.link)];
+  const Pose<double>& base_T_link = poses_[static_cast<std::size_t>(hit.link)];
   hit.triangle = best.triangle;
   hit.point = best.point;
   hit.distance = best.distance;

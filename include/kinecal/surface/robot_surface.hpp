@@ -76,6 +76,28 @@ class RobotSurface {
   std::vector<SurfaceLink> links_;
 };
 
+/// The surface in one pose of the robot, for many points.
+class PosedSurface {
+ public:
+  /// @param surface       must outlive it
+  /// @param base_T_links  poses of its links(), in their order; must outlive it
+  PosedSurface(const RobotSurface& surface, std::span<const Pose<double>> base_T_links);
+  /// RobotSurface::closest() in this pose.
+  [[nodiscard]] SurfaceHit closest(const Vector3<double>& p_base,
+                                   double bound = std::numeric_limits<double>::infinity(),
+                                   const SurfaceHit& last = {}) const;
+
+ private:
+  /// A ball about a link, in the base.
+  struct Ball {
+    Vector3<double> middle;
+    double radius = 0.0;
+  };
+  const RobotSurface& surface_;
+  std::span<const Pose<double>> poses_;
+  std::vector<Ball> balls_;
+};
+
 /// Of poses of a robot, those that are farthest apart, in turn.
 /// @param links  of each: poses of its links in one frame; empty: it does not count
 /// @param most   number of them that are wanted

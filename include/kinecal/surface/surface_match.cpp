@@ -113,10 +113,11 @@ void associate(const RobotSurface& surface, const SurfacePair& pair, const AnyPr
     const std::vector<Pose<double>> base_T_links = links.in(sample);
     const std::vector<PlacedFeature> points = places.placed(camera, *seen, sample);
     of_sample.resize(points.size());
+    const PosedSurface posed(surface, base_T_links);
     SurfaceHit near;  // what was found for the point before: they are neighbours
     for (const std::size_t i : detail::by_place(points, of_sample)) {
       if (of_sample[i].link < 0) of_sample[i] = near;
-      of_sample[i] = surface.closest(base_T_links, points[i].point, bound, of_sample[i]);
+      of_sample[i] = posed.closest(points[i].point, bound, of_sample[i]);
       if (of_sample[i].link < 0) continue;
       of_sample[i].facing =
           of_sample[i].face.dot((points[i].origin - points[i].point).normalized());

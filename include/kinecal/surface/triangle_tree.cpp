@@ -376,24 +376,30 @@ std::optional<SurfacePoint> TriangleTree::closest(const Vector3<double>& p, doub
   Open open;
   open.add(0.0F, 0, 0);
   while (open.any()) {
-    const auto [nearest, number] = open.take();
+    auto [nearest, number] = open.take();
     if (nearest > least) continue;
-    if (number < 0) {
-      if (~number != first) search_leaf(~number);
-      continue;
+    while (number >= 0) {
+      const Node& node = nodes_[static_cast<std::size_t>(number)];
+      Lanes squared{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Lanes beyond = detail::higher_of(
+            detail::higher_of(node.low[k] - at[k], at[k] - node.high[k]), Lanes{});
+        squared += beyond * beyond;
+      }
+      unsigned bits = detail::bits_of(squared <= least);
+      if (bits == 0) break;
+      if ((bits & (bits - 1)) != 0) {
+        const std::size_t below = open.count();
+        for (; bits != 0; bits &= bits - 1) {
+          const int c = std::countr_zero(bits);
+          open.add(squared[c], node.child[static_cast<std::size_t>(c)], below);
+        }
+        number = open.take().number;
+      } else {
+        number = node.child[static_cast<std::size_t>(std::countr_zero(bits))];
+      }
     }
-    const Node& node = nodes_[static_cast<std::size_t>(number)];
-    Lanes squared{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Lanes beyond =
-          detail::higher_of(detail::higher_of(node.low[k] - at[k], at[k] - node.high[k]), Lanes{});
-      squared += beyond * beyond;
-    }
-    const std::size_t below = open.count();
-    for (unsigned bits = detail::bits_of(squared <= least); bits != 0; bits &= bits - 1) {
-      const int c = std::countr_zero(bits);
-      open.add(squared[c], node.child[static_cast<std::size_t>(c)], below);
-    }
+    if (number < 0 && ~number != first) search_leaf(~number);
   }
   if (best < 0) return std::nullopt;
   const SurfacePoint found = on_triangle(p, best);

@@ -55,9 +55,12 @@ class TriangleTree {
   [[nodiscard]] const std::array<Vector3<double>, 3>& corners(int triangle) const {
     return triangles_[static_cast<std::size_t>(triangle)].corners;
   }
-  /// The middle of the box about all triangles, metres.
+  /// The middle of the tree's box and the distance from there to its corners, metres.
+  /// @{
   [[nodiscard]] Vector3<double> center() const { return 0.5 * (facts_.low + facts_.high); }
-  /// How far a point is from the box about all triangles, metres; the surface is no nearer.
+  [[nodiscard]] double radius() const { return 0.5 * (facts_.high - facts_.low).norm(); }
+  /// @}
+  /// How far a point is from that box, metres; the surface is no nearer.
   [[nodiscard]] double away(const Vector3<double>& p) const;
 
   /// The nearest point of the surface.
