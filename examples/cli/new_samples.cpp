@@ -271,6 +271,10 @@ NewSamples read_new_samples(const StoredResult& result, const NewSampleOptions& 
   doubt(config, result.robot, fresh.samples, fresh.diagnostics);
   if (!fresh.diagnostics.errors.empty()) return fresh;
   assemble_new(result, config, fresh);
+  if (!fresh.diagnostics.errors.empty() && !fresh.off_robot.empty()) {
+    fresh.diagnostics.errors = fresh.off_robot;  // so far that nothing is left to compare
+    return fresh;
+  }
   if (!fresh.diagnostics.errors.empty()) {
     fresh.diagnostics.errors.push_back(
         fmt::format("these samples do not fit robot '{}' and the configuration of {}; are they of "

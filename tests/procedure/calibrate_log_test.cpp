@@ -163,10 +163,12 @@ class LogOfASurface : public test::MeshRobotTest {
     all.samples = samples_;
     return calibrate_robot(std::move(all));
   }
-  void expect_alike(const CalibratedRobot& log, const CalibratedRobot& once) {
+  /// @param within  standard deviations
+  void expect_alike(const CalibratedRobot& log, const CalibratedRobot& once, double within) {
     ASSERT_FALSE(once.result.calibrated.empty());
     for (const int p : once.result.calibrated) {
-      EXPECT_NEAR(log.result.table[p].value, once.result.table[p].value, 0.1 * *once.deviation(p))
+      EXPECT_NEAR(log.result.table[p].value, once.result.table[p].value,
+                  within * *once.deviation(p))
           << once.result.table[p].name;
     }
   }
@@ -182,19 +184,21 @@ TEST_F(LogOfASurface, IsAssociatedAsACalibrationIs) {
   EXPECT_EQ(whole.drawn, 0);
   EXPECT_EQ(drawn.drawn, 9);
   EXPECT_EQ(drawn.result.steps.back().samples, 24);
-  expect_alike(whole, once);
-  expect_alike(drawn, once);
+  expect_alike(whole, once, 0.0);
+  expect_alike(drawn, once, 0.3);  // what belongs together is found where the draw puts the arm
   EXPECT_NEAR(drawn.result.table["lift"].value, 0.02, 1e-3);
   EXPECT_NEAR(drawn.result.table["elbow"].value, -0.03, 1e-3);
 }
 
-/// Sample 15 is in the second file, and not drawn.
+/// Sample 14 is in the second file, and not drawn.
 TEST_F(LogOfASurface, LeavesOutACloudThatTheDrawDidNotSee) {
-  for (Feature& point : samples_[14].observations[0].features) point.point.x() += 0.03;
-  const CalibratedRobot drawn = calibrate(8);
-  ASSERT_EQ(std::ranges::count(drawn.numbers, 15), 0);
+  for (Feature& point : samples_[13].observations[0].features) point.point.z() += 0.008;
+  const CalibratedRobot once = at_once(), drawn = calibrate(8);
+  ASSERT_EQ(once.left_out.size(), 1U);
+  EXPECT_EQ(once.left_out[0].number, 14);
+  ASSERT_EQ(std::ranges::count(drawn.numbers, 14), 0);
   ASSERT_EQ(drawn.left_out.size(), 1U);
-  EXPECT_EQ(drawn.left_out[0].number, 15);
+  EXPECT_EQ(drawn.left_out[0].number, 14);
   EXPECT_NEAR(drawn.result.table["lift"].value, 0.02, 1e-3);
 }
 

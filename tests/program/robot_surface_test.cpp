@@ -11,12 +11,14 @@
 #include <map>
 #include <random>
 
+#include "kinecal/config/assemble.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/cameras/camera_info.hpp"
 #include "kinecal/files/poses/poses.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/procedure/calibrate_robot.hpp"
+#include "kinecal/procedure/surface_rounds.hpp"
 #include "kinecal/trust/plain_equations.hpp"
 #include "support/mask_robot.hpp"
 #include "support/run_program.hpp"
@@ -108,13 +110,17 @@ TEST_F(RobotSurfaceProgram, EvaluatesNewCloudsWithoutSolving) {
   const Outcome knocked = evaluate();
   EXPECT_EQ(knocked.code, 2) << knocked.out << knocked.err;
   EXPECT_THAT(knocked.out, HasSubstr("worse: surface "));
-  knock(later, 0.5);
-  const Outcome lost = evaluate();
-  EXPECT_EQ(lost.code, 2) << lost.out << lost.err;
-  EXPECT_THAT(lost.out, HasSubstr("worse: "));
-  EXPECT_THAT(lost.out, HasSubstr("where the result puts it"));
+  knock(later, 0.1);
+  const Outcome off = evaluate();
+  EXPECT_EQ(off.code, 2) << off.out << off.err;
+  EXPECT_THAT(off.out, HasSubstr("worse: "));
+  EXPECT_THAT(off.out, HasSubstr("where the result puts it"));
   const YAML::Node report = YAML::LoadFile((folder_ / "evaluate.json").string());
   EXPECT_EQ(report["off_robot"].size(), 1U);
+  knock(later, 0.5);
+  const Outcome lost = evaluate();
+  EXPECT_EQ(lost.code, 1) << lost.out << lost.err;
+  EXPECT_THAT(lost.err, HasSubstr("where the result puts it"));
 }
 
 /// What calibrates says of its own samples, evaluate says of them as well.
@@ -141,7 +147,7 @@ TEST_F(RobotSurfaceProgram, EvaluatesItsOwnSamplesAsItFittedThem) {
 class SelectedSurfaces : public RobotSurfaceProgram {
  protected:
   /// Uncertainty of the camera's place from some samples if their points err independently: one standard deviation, of the
-  /// noise of a point.
+  /// noise of a point.  By what lies on the true arm.
   double uncertainty(const std::vector<Sample>& samples, const std::string& config) {
     Diagnostics found;
     CalibrationSetup setup{.robot = robot_,
@@ -149,18 +155,29 @@ class SelectedSurfaces : public RobotSurfaceProgram {
                            .samples = samples,
                            .urdf_text = test::mesh_robot_urdf(),
                            .urdf = (folder_ / "arm.urdf").string()};
-    const PreparedCalibration prepared = prepare(std::move(setup));
-    EXPECT_THAT(prepared.diagnostics.errors, testing::IsEmpty());
-    const CalibrationStep& step = prepared.calibration.steps.back();
+    const Pose<double> camera = test::true_camera();
+    const Vector3<double> turn = log(camera.rotation);
+    std::map<std::string, double> truth;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      truth[parameter_name("camera_joint", kFrameAxes[k])] = camera.translation[i];
+      truth[parameter_name("camera_joint", kFrameAxes[k + 3])] = turn[i];
+    }
+    const SurfaceInput input{setup.robot, setup.urdf_text, setup.urdf, {}};
+    const auto blocks = read_surface_blocks(input, *setup.config, found);
+    match_surface_at(input, blocks, truth, *setup.config, setup.samples, found);
+    const Calibration calibration = assemble(*setup.config, robot_, setup.samples, found);
+    EXPECT_THAT(found.errors, testing::IsEmpty());
+    if (calibration.steps.empty()) return 0.0;
+    std::vector<double> values;
+    for (const Parameter& parameter : calibration.table) values.push_back(truth[parameter.name]);
+    const CalibrationStep& step = calibration.steps.back();
     const Eigen::MatrixXd covariance =
-        plain_equations(*step.problem, step.free, prepared.calibration.begin)
-            .hessian.matrix()
-            .inverse();
+        plain_equations(*step.problem, step.free, values).hessian.matrix().inverse();
     double variance = 0.0;
     const std::vector<int>& free = step.free.parameters();
     for (const char* axis : {"camera_joint_x", "camera_joint_y", "camera_joint_z"}) {
-      const auto column =
-          std::ranges::find(free, prepared.calibration.table.find(axis)) - free.begin();
+      const auto column = std::ranges::find(free, calibration.table.find(axis)) - free.begin();
       variance += covariance(column, column);
     }
     return std::sqrt(variance);

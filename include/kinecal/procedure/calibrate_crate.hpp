@@ -42,11 +42,11 @@ struct JudgedCrate : CalibratedRobot {
 
 namespace detail {
 
-/// Where a calibration begins, in the order of another table; empty: at its initial values.
+/// Where a calibration begins, in the order of another table.
 [[nodiscard]] inline std::vector<double> begin_of(const Calibration& calibration,
                                                   const ParameterTable& table) {
   std::vector<double> begin;
-  for (int p = 0; !calibration.begin.empty() && p < table.size(); ++p) {
+  for (int p = 0; p < table.size(); ++p) {
     const int from = calibration.table.find(table[p].name);
     begin.push_back(from < 0 ? table[p].value : calibration.begin[static_cast<std::size_t>(from)]);
   }
@@ -80,7 +80,10 @@ template <class... Parts>
   const Calibration assembled = std::move(prepared.calibration);
   prepared.calibration =
       detail::as_input_error([&] { return make_calibration(crate, table, prepared.samples); });
-  prepared.calibration.begin = detail::begin_of(assembled, table);
+  if (!assembled.begin.empty()) {  // association has found where to begin
+    prepared.calibration.begin = detail::begin_of(assembled, table);
+    prepared.calibration.steps.front().unknown_frames = assembled.steps.front().unknown_frames;
+  }
   prepared.calibration.steps.front().max_num_iterations = options.solving.max_num_iterations;
   return prepared;
 }
