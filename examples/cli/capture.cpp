@@ -80,8 +80,7 @@ SessionFinder finder_of(const CaptureFinder& finder, const Robot& robot, AnyRobo
       return view;
     };
     return {finder.name, joints_only,
-            [touch = *touch](const View& view) { return touch.find(view); },
-            [](const View&) { return std::string(); }};
+            [touch = *touch](const View& view) { return touch.find(view); }, TouchFinder::fault};
   }
   AnyCamera& camera = hardware.cameras.at(finder.name);
   const FinderSettings settings = on_robot(finder, robot);

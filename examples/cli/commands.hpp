@@ -102,6 +102,7 @@ struct InitOptions {
   std::string target_frame, tracker_frame;                  ///< the same
   std::vector<std::string> targets;
   std::optional<double> length;      ///< of what the tip touches, metres
+  std::string touched_link;          ///< that carries it; empty: the base
   std::vector<std::string> cameras;  ///< names of cameras alone, instead of a robot
   std::string poses;     ///< table of poses of the flange, or samples of another program,
                          ///< instead of a URDF; or empty

@@ -239,6 +239,9 @@ void answer_names(const Robot& robot, InitOptions& options, InitAnswers& answers
 void check_given(const Robot& robot, const InitOptions& options) {
   Diagnostics diagnostics;
   if (!options.base.empty()) check_init_link(robot, "--base", options.base, diagnostics);
+  if (!options.touched_link.empty()) {
+    check_init_link(robot, "--touched-link", options.touched_link, diagnostics);
+  }
   for (const auto& [option, links] :
        {std::pair("--arm", options.arm), std::pair("--camera", options.camera)}) {
     for (const std::string& link : links_of(robot, links))
@@ -266,6 +269,7 @@ void warn_of_idle(const InitOptions& options, InitTarget target, std::string_vie
   warn(needs_target_frame(target), options.target_frame, "--target-frame");
   warn(target == InitTarget::tracker, options.tracker_frame, "--tracker-frame");
   warn(has_length(target), options.length ? "given" : "", "--length");
+  warn(is_touched(target) && target != InitTarget::gravity, options.touched_link, "--touched-link");
 }
 
 /// The columns.yaml of a table that samples come from; empty if they come from no table.
@@ -362,6 +366,7 @@ std::vector<InitAnswers> answer_from_samples(const Robot& robot, const InitOptio
   given.tracker_frame = options.tracker_frame;
   set_target_frames(options.target_frame, given);
   given.length = options.length;
+  given.carrier = options.touched_link;
   const std::optional<InitTarget> target = given_target(robot, options);
   if (target) given.target = *target;
   std::vector<InitAnswers> all = all_answers_from_samples(robot, samples, given);
@@ -383,6 +388,7 @@ std::vector<InitAnswers> answer(const Robot& robot, InitOptions& options) {
   answers.arm = first_of(robot, options.arm);
   answers.camera = first_of(robot, options.camera);
   answers.length = options.length;
+  answers.carrier = options.touched_link;
   answer_targets(robot, options, answers);
   warn_of_idle(options, answers.target, to_string(answers.target, answers.board));
   if (needs_arm(answers.target) && answers.arm.empty()) {
@@ -416,6 +422,7 @@ std::string call_of(const InitOptions& options) {
         std::pair("--robot-camera-name", options.camera_name),
         std::pair("--target-frame", options.target_frame),
         std::pair("--tracker-frame", options.tracker_frame),
+        std::pair("--touched-link", options.touched_link),
         std::pair("--length", options.length ? fmt::format("{}", *options.length) : ""),
         std::pair("--base", options.base)}) {
     if (!value.empty()) call.add_option(option, {value});

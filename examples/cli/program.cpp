@@ -395,7 +395,8 @@ void add_init(CLI::App& command, InitOptions& options) {
           "gripper); world_checkerboard, world_apriltag or world_charuco; tracker; ground, which "
           "also goes with another: leds,ground; robot (its own surface); or what the tip touches, "
           "with "
-          "nothing but joints recorded: point, tool, sockets, plane, line, sphere, bar, distance")
+          "nothing but joints recorded: point, tool, sockets, plane, line, sphere, bar, distance; "
+          "gravity (an accelerometer)")
       ->delimiter(',')
       ->type_name(one_of("TARGET", target_words()));
   command
@@ -414,6 +415,11 @@ void add_init(CLI::App& command, InitOptions& options) {
                   "a length that is known, metres: of a bar, between two sockets, from a ball's "
                   "center to the tip")
       ->type_name("METRES");
+  command
+      .add_option(
+          "--touched-link", options.touched_link,
+          "link that carries what the tip touches, such as the other hand; default: the base")
+      ->type_name("LINK");
   command
       .add_option("--arm", options.arm,
                   "link at the end of the arm; with target robot: frees the joints up to it")

@@ -20,6 +20,7 @@
 #include "kinecal/text/counted.hpp"
 #include "kinecal/tools/identify/tell_apart.hpp"
 #include "kinecal/tools/simulation/pose_samples.hpp"
+#include "kinecal/tools/simulation/touched_samples.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/captures/ruined.hpp"
 #include "kinecal/trust/uncertainty/compared_frames.hpp"
@@ -168,6 +169,23 @@ ParameterTable take_poses(const StudyFiles& files, int count, StudyInput& input)
   return made.values;
 }
 
+/// Takes generated poses in which a tip touches something.
+void take_touches(const StudyFiles& files, const ConfiguredTouch& touch, int count,
+                  StudyInput& input) {
+  if (!files.pose_file.empty() || !files.have.empty()) {
+    throw InputError(
+        "--poses and --have are of robots that a camera sees; of a tip that touches something, "
+        "give "
+        "what was recorded as --samples");
+  }
+  const std::uint64_t seed = static_cast<std::uint64_t>(std::max(1, files.seed));
+  input.samples =
+      touched_samples(input.robot, touch, static_cast<std::size_t>(std::max(1, count)), seed);
+  for (const Sample& sample : input.samples) {
+    input.poses.push_back({sample.joint_names, sample.joint_positions, {}, sample.source});
+  }
+}
+
 /// Adds new poses before the recorded samples, which exist already: positions between those that were recorded, and
 /// the features of recorded samples.
 void add_poses_between(int count, std::uint64_t seed, StudyInput& input) {
@@ -303,7 +321,11 @@ std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
     throw InputError("--target " + files.target + ": " + files.config +
                      " compares the robot with its own surface, so its target is robot");
   }
-  if (files.samples.empty() || !files.scene.empty()) {
+  const std::optional<ConfiguredTouch> touch =
+      files.samples.empty() ? configured_touch(input->config) : std::nullopt;
+  if (touch) {
+    input->plan.setup.seed = static_cast<std::uint64_t>(std::max(1, files.seed));
+  } else if (files.samples.empty() || !files.scene.empty()) {
     const bool is_default = files.target.empty() && files.scene.empty();
     const auto surface = [&] {
       const SurfaceSource source{.urdf = files.urdf,
@@ -324,7 +346,7 @@ std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
   }
   print_or_throw(of_scene);
   const bool sees_robot = input->plan.target.type == "robot";
-  if (files.samples.empty() && has_config && sees_robot != input->is_of_surface) {
+  if (!touch && files.samples.empty() && has_config && sees_robot != input->is_of_surface) {
     throw InputError(files.config +
                      (sees_robot ? ": does not compare the surface of the robot"
                                  : ": compares the robot with its own surface") +
@@ -343,7 +365,9 @@ std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
   }
   ParameterTable places;
   std::optional<ParameterTable> recorded;
-  if (files.samples.empty()) {
+  if (touch) {
+    take_touches(files, *touch, poses, *input);
+  } else if (files.samples.empty()) {
     places = take_poses(files, poses, *input);
   } else {
     recorded =

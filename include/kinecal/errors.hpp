@@ -6,6 +6,7 @@
 #include "kinecal/errors/built_in_block.hpp"
 #include "kinecal/errors/difference.hpp"
 #include "kinecal/errors/error_block.hpp"
+#include "kinecal/errors/gravity_seen.hpp"
 #include "kinecal/errors/loss.hpp"
 #include "kinecal/errors/plane_fit.hpp"
 #include "kinecal/errors/plane_to_plane.hpp"

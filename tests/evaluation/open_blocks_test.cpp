@@ -35,6 +35,10 @@ TEST(OpenBlocks, PointOnLine) {
   test::check_rows_of(PointOnLine{}, {"arm", "tracker"});
   test::check_rows_of(PointOnLine{}, {"arm", "body"});
 }
+TEST(OpenBlocks, GravitySeen) {
+  test::check_rows_of(GravitySeen{{0.1, -0.2, 9.8}}, {"body"});
+  test::check_rows_of(GravitySeen{{0.1, -0.2, 9.8}}, {"tracker"});
+}
 TEST(OpenBlocks, AReadingOfAUsersSensor) {
   test::check_rows_of(test::WireLength{}, {"camera", "wire"});
 }

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "support/paths.hpp"
 #include "support/run_program.hpp"
@@ -223,6 +224,33 @@ TEST_F(CaptureProgram, RecordsWhereAPersonHasPutTheRobot) {
                     HasSubstr("pose 2: skipped: nothing has moved since the last sample; move a "
                               "joint by more than 0.005 rad (0.3 deg) or 5 mm"),
                     HasSubstr("manual.bag: 1 sample of 2 poses"), Not(HasSubstr("pose 3:"))));
+}
+
+/// Nothing looks at a tip that touches: the joints are recorded, and which socket it was.
+TEST_F(CaptureProgram, RecordsWhichSocketThePersonHasPutTheTipInto) {
+  simulate(3);
+  std::ofstream(folder_ / "touch.yaml")
+      << "features:\n"
+         "  socket_1: {type: TouchFinder, frame_id: socket_1}\n"
+         "  socket_2: {type: TouchFinder, frame_id: socket_2, tip_frame: ball, x: 0.05}\n";
+  std::ofstream(folder_ / "keys.txt") << "3\n2\nq\n";
+  const Outcome session = run(kProgram +
+                              " capture touch.yaml --urdf sim/robot.urdf --manual "
+                              "--robot simulated:sim/scene.yaml -o touched.yaml < keys.txt");
+  EXPECT_EQ(session.code, 0) << session.err;
+  EXPECT_THAT(session.out, AllOf(HasSubstr("put the tip into one of socket_1, socket_2"),
+                                 HasSubstr("'3' is none of them"),
+                                 HasSubstr("touched.yaml: 1 sample of 1 pose")));
+  Diagnostics diagnostics;
+  const std::vector<Sample> samples =
+      read_samples((folder_ / "touched.yaml").string(), diagnostics);
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_FALSE(samples[0].joint_names.empty());
+  ASSERT_NE(samples[0].observation("arm"), nullptr);
+  EXPECT_EQ(samples[0].observation("arm")->features.at(0).frame, "ball");
+  const Feature& place = samples[0].observation("touched")->features.at(0);
+  EXPECT_EQ(place.frame, "socket_2");
+  EXPECT_EQ(place.point, Vector3<double>(0.05, 0.0, 0.0));
 }
 
 TEST_F(CaptureProgram, CapturesThePosesThatAPersonHasRecorded) {

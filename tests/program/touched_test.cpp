@@ -97,6 +97,19 @@ TEST_F(Touched, FourPosesGiveTheToolsCenterPoint) {
   EXPECT_THAT(done.out, HasSubstr("tip_z"));
 }
 
+/// How many poses it takes, before anybody has taken one; the tip is where the URDF has it.
+TEST_F(Touched, PlansPosesInWhichTheTipTouches) {
+  for (const char* target : {"point", "plane", "distance"}) {
+    ASSERT_EQ(
+        kinecal(std::string("init --urdf ur5e.urdf --arm tool0 --force --target ") + target).code,
+        0);
+    const Outcome planned = kinecal(
+        "plan --urdf ur5e.urdf --config calibrate.yaml --accuracy '1 mm' -o poses.yaml --force");
+    EXPECT_EQ(planned.code, 0) << target << planned.out << planned.err;
+    EXPECT_TRUE(fs::exists(folder_ / "poses.yaml")) << planned.out;
+  }
+}
+
 /// A Panda with a ball in two sockets 50 mm apart, as a table with joints and sockets; two regions held out.
 TEST_F(Touched, SocketsAndALengthFindTheGeometryOfThePanda) {
   KINECAL_NEEDS_DATA("mukca_panda");

@@ -158,6 +158,11 @@ Registry::Registry() {
                                    [](const BlockConfig&) { return PointOnPlane{}; }));
   add(built_in_block<PointOnLine>(pair, {{"scale", 1.0}},
                                   [](const BlockConfig&) { return PointOnLine{}; }));
+  add(built_in_block<GravitySeen>(
+      {{"model", "model_a"}}, {{"x", 0.0}, {"y", 0.0}, {"z", 9.80665}, {"scale", 1.0}},
+      [number](const BlockConfig& block) {
+        return GravitySeen{{number(block, "x"), number(block, "y"), number(block, "z")}};
+      }));
   add(built_in_block<PoseToPose>(
       pair, {{"translation_scale", 1.0}, {"rotation_scale", 1.0}},
       [number](const BlockConfig& block) {

@@ -4,6 +4,7 @@
 
 #include <variant>
 
+#include "kinecal/errors/gravity_seen.hpp"
 #include "kinecal/errors/plane_to_plane.hpp"
 #include "kinecal/errors/point_distance.hpp"
 #include "kinecal/errors/point_on_line.hpp"
@@ -25,6 +26,6 @@ namespace kinecal {
 using BuiltInBlock =
     std::variant<PointToPoint, PointToPixel, PointToPlane, PlaneToPlane, PointDistance, PointToLine,
                  PointToSphere, PoseToPose, RayToRay, PointToRay, PointToMesh, PointToOutline,
-                 PointOnPlane, PointOnLine>;
+                 PointOnPlane, PointOnLine, GravitySeen>;
 
 }  // namespace kinecal

@@ -11,6 +11,7 @@
   storage template class BlockTerm<PoseToPose, Packet>;   \
   storage template class BlockTerm<PointOnPlane, Packet>; \
   storage template class BlockTerm<PointOnLine, Packet>;  \
+  storage template class BlockTerm<GravitySeen, Packet>;  \
   storage template class BlockTerm<RayToRay, Packet>
 
 namespace kinecal::detail {

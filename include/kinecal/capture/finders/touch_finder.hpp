@@ -23,6 +23,9 @@ struct TouchFinder {
 
   /// The observations of both, whatever the view shows.
   [[nodiscard]] Found find(const View& view) const;
+
+  /// Empty: there is nothing to look at.
+  [[nodiscard]] static std::string fault(const View& /*view*/) { return {}; }
 };
 static_assert(Finder<TouchFinder>);
 

@@ -26,7 +26,10 @@ template <class F>
   return std::visit(
       [](const auto& chosen) -> std::function<Found(const View&)> {
         using Chosen = std::decay_t<decltype(chosen)>;
-        if constexpr (requires { typename Chosen::FinderType; }) {
+        if constexpr (std::is_same_v<Chosen, TouchFinder>) {
+          throw std::invalid_argument(
+              "no image shows that a tip touches; record it by hand: kinecal capture --manual");
+        } else if constexpr (requires { typename Chosen::FinderType; }) {
           return shared_finder(typename Chosen::FinderType(chosen));
         } else if constexpr (Finder<Chosen>) {
           return shared_finder(chosen);

@@ -233,7 +233,8 @@ void add_touched(const Robot& robot, std::span<const Sample> samples,
                     "without a camera, not {}",
                     chains.empty() ? std::string("none") : names_of(chains)));
   }
-  const SeenSensor &held = *chains[0], &touched = *chains[1];
+  const bool arm_is_last = chains[1]->name == "arm" || (chains[0]->varies && !chains[1]->varies);
+  const SeenSensor &held = *chains[arm_is_last ? 1 : 0], &touched = *chains[arm_is_last ? 0 : 1];
   answers.holder = held.name;
   answers.tracker = touched.name;
   if (answers.target_frame.empty()) answers.target_frame = held.frames.front();

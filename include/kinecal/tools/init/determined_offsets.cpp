@@ -59,8 +59,12 @@ using NamedPoses = std::map<std::string, Pose<double>>;  ///< corrections of fra
 class GeneratedPoses {
  public:
   /// @param frames  joints that may have corrections
-  GeneratedPoses(const Robot& robot, MeasuredTarget measured, const std::set<std::string>& frames)
+  /// @param count   of them
+  GeneratedPoses(const Robot& robot, MeasuredTarget measured, const std::set<std::string>& frames,
+                 std::size_t count = 60, std::uint64_t seed = 1)
       : robot_(robot),
+        count_(count),
+        random_(seed),
         measured_(std::move(measured)),
         to_target_(make_chain(robot, measured_.base, measured_.target, frames)),
         to_sensor_(make_chain(robot, measured_.base, measured_.sensor, frames)) {
@@ -114,6 +118,8 @@ class GeneratedPoses {
         return {true, true, false, true, true, false};
       case Contact::plane:
         return {false, false, true, true, true, false};
+      case Contact::gravity:
+        return {};
       case Contact::point:
       case Contact::sphere:
         break;
@@ -182,6 +188,7 @@ class GeneratedPoses {
       case Contact::sphere:
         return Eigen::VectorXd::Constant(1, p.norm());
       case Contact::none:
+      case Contact::gravity:
       case Contact::point:
         break;
     }
@@ -199,6 +206,13 @@ class GeneratedPoses {
       if (socket >= 0 && socket_of(i) != static_cast<std::size_t>(socket)) {
         of_pose.erase(measured_.sensor_frame);
       }
+      if (measured_.contact == Contact::gravity) {
+        // What it reads in this pose, in the base as the offsets have it; the correction is that of gravity.
+        const Matrix3<double> before = seen_from(poses_[i], {}, {}).rotation;
+        all.segment(static_cast<Eigen::Index>(i) * rows, rows) =
+            seen_from(poses_[i], offsets, of_pose).rotation * before.row(2).transpose();
+        continue;
+      }
       const Pose<double> sensor_T_target = seen_from(poses_[i], offsets, of_pose);
       const double distance = distances_.empty() ? 0.0 : distances_[i];
       all.segment(static_cast<Eigen::Index>(i) * rows, rows) =
@@ -209,19 +223,21 @@ class GeneratedPoses {
 
   /// Random poses in which the tip touches: the contact is where the tip is in a first pose.
   void touch(const std::set<std::string>& drives) {
-    constexpr std::size_t kPoses = 60;
     constexpr int kTries = 3000;
     constexpr double kRadius = 0.2, kApart = 0.1;  // metres
-    std::mt19937_64 random(1);
+    if (measured_.contact == Contact::gravity) sockets_ = {Vector3<double>::Zero()};
     const auto random_pose = [&] {
       NamedNumbers pose;
       for (const std::string& joint : drives)
-        pose[joint] = random_position(driven(robot_, joint), random);
+        pose[joint] = random_position(driven(robot_, joint), random_);
       return pose;
     };
     const auto tip_in_base = [&](const NamedNumbers& pose) {
       return (end_of(to_target_, pose, {}, {}) * link_T_target_).translation;
     };
+    while (measured_.contact == Contact::gravity && poses_.size() < count_) {
+      poses_.push_back(random_pose());
+    }
     for (int i = 0; i < kTries && poses_.empty(); ++i) {
       // A contact in the middle of what random poses reach, not at its border.
       Vector3<double> middle = Vector3<double>::Zero();
@@ -238,12 +254,12 @@ class GeneratedPoses {
       }
       radius_ = measured_.contact == Contact::sphere ? kRadius : 0.0;
       distances_.clear();
-      for (int n = 0; n < kTries / 10 && poses_.size() < kPoses; ++n) {
+      for (int n = 0; n < static_cast<int>(20 * count_) && poses_.size() < count_; ++n) {
         NamedNumbers pose = random_pose();
         const bool touches = measured_.is_point ? reach(pose, drives) : measures(pose);
         if (touches) poses_.push_back(std::move(pose));
       }
-      if (poses_.size() < kPoses / 3)
+      if (poses_.size() < count_ / 3)
         poses_.clear(), distances_.clear();  // hardly reachable: another place
     }
   }
@@ -323,25 +339,23 @@ class GeneratedPoses {
   }
 
   void generate(const std::set<std::string>& drives) {
-    constexpr std::size_t kPoses = 60;
     constexpr int kTries = 3000;
-    std::mt19937_64 random(1);
     std::vector<NamedNumbers> others;  // behind the camera: only if nothing is in front of it
-    for (int i = 0; i < kTries && poses_.size() < kPoses; ++i) {
+    for (int i = 0; i < kTries && poses_.size() < count_; ++i) {
       NamedNumbers pose;
       for (const std::string& joint : drives) {
-        pose[joint] = random_position(driven(robot_, joint), random);
+        pose[joint] = random_position(driven(robot_, joint), random_);
       }
       if (i == 0 && measured_.is_camera && measured_.target == measured_.base) {
         put_before_camera(pose);
       }
       if (!measured_.is_camera || is_visible(pose, 1.0)) {
         poses_.push_back(pose);
-      } else if (others.size() < kPoses && is_visible(pose, -1.0)) {
+      } else if (others.size() < count_ && is_visible(pose, -1.0)) {
         others.push_back(pose);
       }
     }
-    if (poses_.size() < kPoses / 2) poses_.insert(poses_.end(), others.begin(), others.end());
+    if (poses_.size() < count_ / 2) poses_.insert(poses_.end(), others.begin(), others.end());
   }
 
   /// Puts a board that stands still where the camera sees it in one pose.
@@ -354,6 +368,8 @@ class GeneratedPoses {
   }
 
   const Robot& robot_;
+  std::size_t count_;
+  std::mt19937_64 random_;
   MeasuredTarget measured_;
   RuntimeChain to_target_, to_sensor_;
   Pose<double> link_T_target_, link_T_sensor_;
@@ -482,8 +498,9 @@ std::vector<std::string> driven_joints(const Robot& robot, const MeasuredTarget&
   return names;
 }
 
-TouchingPoses touching_poses(const Robot& robot, const MeasuredTarget& measured) {
-  const detail::GeneratedPoses generated(robot, measured, {});
+TouchingPoses touching_poses(const Robot& robot, const MeasuredTarget& measured, std::size_t count,
+                             std::uint64_t seed) {
+  const detail::GeneratedPoses generated(robot, measured, {}, count, seed);
   return {generated.poses(), generated.distances()};
 }
 
@@ -510,6 +527,11 @@ OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
   OffsetEffects effects;
   detail::Span span;
   detail::add_all(span, poses.camera_columns());
+  for (Eigen::Index axis = 0; axis < 3 && measured.contact == Contact::gravity; ++axis) {
+    Eigen::VectorXd of_gravity = Eigen::VectorXd::Zero(poses.measured({}, {}).size());
+    for (Eigen::Index at = axis; at < of_gravity.size(); at += 3) of_gravity(at) = 1.0;
+    span.add(of_gravity);
+  }
   const bool free_radius = measured.contact == Contact::sphere && !measured.radius_known;
   if (free_radius) span.add(Eigen::VectorXd::Ones(poses.measured({}, {}).size()));
   for (const detail::FrameSpan& frame : free) {

@@ -19,6 +19,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -29,7 +31,8 @@
 namespace kinecal {
 
 /// What a tip touches: in its own frame, the origin, the z axis, the plane z = 0, or a sphere about the origin.
-enum class Contact { none, point, line, plane, sphere };
+/// Or gravity, as an accelerometer on the arm reads it.
+enum class Contact { none, point, line, plane, sphere, gravity };
 
 /// A target and the sensor that measures its points; or a tip on an arm and what it touches, fixed to `sensor`.
 struct MeasuredTarget {
@@ -79,10 +82,12 @@ struct TouchingPoses {
   std::vector<double> distances;  ///< that a distance sensor measures, metres; empty: a tip touches
 };
 
-/// Random ones, as many as were found of 60.  Nothing looks for collisions.
+/// Random ones.  Nothing looks for collisions.
 /// @param measured  with a contact
+/// @param count     at most
 /// @throws RobotError  like make_chain()
-[[nodiscard]] TouchingPoses touching_poses(const Robot& robot, const MeasuredTarget& measured);
+[[nodiscard]] TouchingPoses touching_poses(const Robot& robot, const MeasuredTarget& measured,
+                                           std::size_t count, std::uint64_t seed);
 
 /// The effects of these joints' offsets.
 /// @param frames  joints whose frames are free

@@ -28,7 +28,8 @@ enum class InitTarget {
   line,
   sphere,
   bar,
-  distance
+  distance,
+  gravity
 };
 
 /// The boards of `checkerboard` and `world_checkerboard`.
@@ -43,7 +44,7 @@ struct InitTargetWord {
 };
 
 /// All targets, in the order of questions.
-inline constexpr std::array<InitTargetWord, 18> kInitTargets = {{
+inline constexpr std::array<InitTargetWord, 19> kInitTargets = {{
     {InitTarget::leds, InitBoard::checkerboard, "leds",
      "LEDs (or other points at known places) on the gripper, seen by a camera"},
     {InitTarget::checkerboard, InitBoard::checkerboard, "checkerboard",
@@ -78,6 +79,8 @@ inline constexpr std::array<InitTargetWord, 18> kInitTargets = {{
      "nothing measures: a ball bar from the tip to a socket"},
     {InitTarget::distance, InitBoard::checkerboard, "distance",
      "a dial gauge or a distance sensor on the arm, against a plane: one number a pose"},
+    {InitTarget::gravity, InitBoard::checkerboard, "gravity",
+     "an accelerometer on the arm, which reads gravity at rest"},
 }};
 
 /// The name of a target on the command line.
@@ -106,7 +109,8 @@ inline constexpr std::array<InitTargetWord, 18> kInitTargets = {{
   return words;
 }
 
-/// True if the tip of an arm touches the target and no sensor measures: joints are all that is recorded.
+/// True if the tip of an arm touches the target, or what it carries reads gravity: joints are all that is recorded, and at
+/// most a few numbers beside them.
 [[nodiscard]] constexpr bool is_touched(InitTarget target) {
   return target >= InitTarget::tool;
 }
@@ -149,6 +153,7 @@ struct InitAnswers {
   InitBoard board = InitBoard::checkerboard;  ///< of a board
   std::string holder = {};   ///< sensor_name of what holds the target; empty: "arm" or "board"
   std::string tracker = {};  ///< sensor_name of a laser tracker; empty: "tracker"
+  std::string carrier = {};  ///< link that carries what is touched; empty: the base
   std::vector<std::string> places =
       {};                             ///< frames of what is touched: one for each socket, else one
   std::optional<double> length = {};  ///< metres, if it is known: see has_length()

@@ -162,7 +162,8 @@ std::string initial_capture(const Robot& robot, const std::vector<InitAnswers>& 
   // No finder reports where a reflector is, or LEDs in pixels; clouds and masks are taken as they are.
   const bool in_pixels = answers.camera_type == "camera2d";
   if (answers.target == InitTarget::tracker || answers.target == InitTarget::robot) return "";
-  if (answers.target == InitTarget::distance) return "";  // its readings come in a table
+  // Their readings come in a table.
+  if (answers.target == InitTarget::distance || answers.target == InitTarget::gravity) return "";
   if (is_touched(answers.target)) {
     return fmt::format("{}: what the tip touches, for `kinecal capture --manual`.\n\nfeatures:\n",
                        kInitialCaptureMark) +

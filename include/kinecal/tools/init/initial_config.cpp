@@ -90,7 +90,9 @@ bool free_offsets(InitPlan& plan, const Robot& robot, const MeasuredTarget& meas
     if (effect.determined) {
       plan.free_params.push_back({"", effect.joint, {}});
     } else if (!effect.is_seen) {
-      plan.left_out.push_back({effect.joint, "It moves the arm and the camera alike"});
+      plan.left_out.push_back({effect.joint, measured.contact == Contact::none
+                                                 ? "It moves the arm and the camera alike"
+                                                 : "It changes nothing that is recorded"});
     } else if (effect.imitated_by == effect.joint) {
       plan.left_out.push_back({effect.joint, "Its frame is free, which includes its offset"});
     } else if (!effect.imitated_by.empty()) {
@@ -410,7 +412,7 @@ bool free_arm_and_head(InitPlan& plan, const Robot& robot, const InitAnswers& an
 
 /// What the tip touches, seen from the arm's base.
 [[nodiscard]] MeasuredTarget touched_by_arm(const InitAnswers& answers) {
-  MeasuredTarget touched{answers.base, answers.arm, answers.base};
+  MeasuredTarget touched{answers.base, answers.arm, answers.carrier};
   touched.target_frame = answers.target_frame;
   touched.is_point = answers.target != InitTarget::distance;
   touched.sensor_frame = answers.places.front();
@@ -433,7 +435,7 @@ void free_axes(InitPlan& plan, const std::string& name, const std::string& why,
 
 /// Frees the frames of what is touched, in the axes that a contact shows.
 void free_places(InitPlan& plan, const InitAnswers& answers) {
-  const std::string base = name_to_yaml(answers.base);
+  const std::string base = name_to_yaml(answers.carrier);
   const std::string& first = answers.places.front();
   switch (answers.target) {
     case InitTarget::plane:
@@ -465,16 +467,61 @@ void free_places(InitPlan& plan, const InitAnswers& answers) {
   }
 }
 
+/// Frees the zeros that a touch shows.
+/// @throws InputError  if it shows none
+void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers& answers) {
+  free_offsets(plan, robot, touched_by_arm(answers), {});
+  if (!plan.free_params.empty()) return;
+  throw InputError(
+      fmt::format("--target: {} shows no joint offset of arm '{}'; with --target tool, a tip alone "
+                  "is found",
+                  to_string(answers.target), answers.arm));
+}
+
+/// An accelerometer on an arm that reads gravity at rest.
+[[nodiscard]] InitPlan plan_gravity(const Robot& robot, const InitAnswers& answers) {
+  InitPlan plan;
+  add_chain_model(plan,
+                  "The accelerometer, with its axes in frame " + answers.target_frame +
+                      "; what it reads are conditions ax, ay, az of each sample.",
+                  holder_of(answers), answers.arm);
+  plan.models.back().fields.front().second = "chain6d";
+  free_touched_offsets(plan, robot, answers);
+  for (const char* axis : {"contact_x", "contact_y", "contact_z"}) {
+    plan.free_params.push_back(
+        {axis[8] == 'x' ? "What it would read with the axes of link " + name_to_yaml(answers.base) +
+                              ": the base may lean, and its scale need not be 1."
+                        : std::string(),
+         axis,
+         {}});
+  }
+  free_axes(plan, answers.target_frame,
+            "How the accelerometer is turned on link " + name_to_yaml(answers.arm) +
+                ".  The URDF does not contain this frame.",
+            {false, false, false, true, true, true});
+  add_initial_value(plan, answers.target_frame,
+                    "Zeros are no guess: kinecal searches for what the URDF does not have.");
+  plan.error_blocks.push_back(
+      {"At rest it reads gravity, m/s^2.  The noise is what residuals show.",
+       "contact",
+       {{"type", "gravity_seen"},
+        {"model", name_to_yaml(holder_of(answers))},
+        {"loss", "{type: huber, scale: 3.0}"}}});
+  return plan;
+}
+
 /// The tip of an arm touches something that stands still; nothing is measured but the joints.
 [[nodiscard]] InitPlan plan_touched(const Robot& robot, const InitAnswers& answers) {
   InitPlan plan;
   const InitTarget target = answers.target;
-  if (movers(robot, answers.base, answers.arm).empty()) {
+  if (movers(robot, answers.carrier, answers.arm).empty()) {
     throw InputError(
-        fmt::format("--arm: link '{}' does not move relative to link '{}'; choose another link, or "
-                    "another --base",
-                    answers.arm, answers.base));
+        fmt::format("--arm: link '{}' does not move relative to link '{}'; choose another "
+                    "link, or another {}",
+                    answers.arm, answers.carrier,
+                    answers.carrier == answers.base ? "--base" : "--touched-link"));
   }
+  if (target == InitTarget::gravity) return plan_gravity(robot, answers);
   const std::string tip = answers.target_frame;
   const bool is_pose = contact_of(target) == Contact::plane || contact_of(target) == Contact::line;
   add_chain_model(plan,
@@ -483,20 +530,13 @@ void free_places(InitPlan& plan, const InitAnswers& answers) {
                       : "The arm: the tip is point (0, 0, 0) of frame " + tip + ".",
                   holder_of(answers), answers.arm);
   add_chain_model(plan, "What it touches, which stands still in this link.", tracker_of(answers),
-                  answers.base);
+                  answers.carrier);
   if (is_pose) plan.models.back().fields.front().second = "chain6d";
-  const MeasuredTarget touched = touched_by_arm(answers);
   if (target == InitTarget::tool) {
     plan.left_out.push_back(
         {"all joints", "The tool's centre point alone: with --target point, they are free, too"});
   } else {
-    free_offsets(plan, robot, touched, {});
-    if (plan.free_params.empty()) {
-      throw InputError(fmt::format(
-          "--target: {} shows no joint offset of arm '{}'; with --target tool, its tip alone is "
-          "found",
-          to_string(target), answers.arm));
-    }
+    free_touched_offsets(plan, robot, answers);
   }
   free_places(plan, answers);
   if (target == InitTarget::distance) {
@@ -730,6 +770,7 @@ void check_answers(const Robot& robot, const InitAnswers& answers) {
   for (const std::string& place : answers.places) {
     check_init_frame(robot, "--target", place, diagnostics);
   }
+  if (is_touched(target)) check_init_link(robot, "--touched-link", answers.carrier, diagnostics);
   if (answers.length && !has_length(target)) {
     diagnostics.error({"--length", 0},
                       fmt::format("{} has no length; sockets, sphere and bar have one",

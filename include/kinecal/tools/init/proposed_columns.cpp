@@ -520,6 +520,35 @@ struct PointColumns {
   return -1;
 }
 
+/// The three columns of an accelerometer.
+/// @throws InputError  if there is not one
+[[nodiscard]] std::array<int, 3> accelerometer_columns(const ReadTable& table,
+                                                       const std::string& file) {
+  const std::set<std::string> names = {"a",   "acc",     "accel", "accelerometer", "acceleration",
+                                       "imu", "gravity", "g"};
+  std::array<int, 3> found = {-1, -1, -1};
+  for (int c = 0; c < static_cast<int>(table.columns.size()) && table.header; ++c) {
+    std::vector<std::string> words = table.columns[static_cast<std::size_t>(c)].words;
+    std::erase_if(words, [](const std::string& word) {  // m/s^2
+      return word == "m" || word == "s" || word == "2" || word == "linear";
+    });
+    if (words.empty()) continue;
+    std::string last = words.back();
+    words.pop_back();
+    const std::size_t axis = std::string_view("xyz").find(last.back());
+    last.pop_back();
+    if (axis == std::string_view::npos || words.size() > 2) continue;
+    if (!last.empty()) words.push_back(last);
+    const bool is_named =
+        !words.empty() && std::all_of(words.begin(), words.end(),
+                                      [&](const std::string& w) { return names.contains(w); });
+    if (is_named) found[axis] = c;
+  }
+  if (std::all_of(found.begin(), found.end(), [](int c) { return c >= 0; })) return found;
+  throw InputError(fmt::format("{}: no three columns are called ax, ay, az (or acc_x ...); {}",
+                               file, table.header_text));
+}
+
 /// The column of a distance sensor or dial gauge; -1 if there is none.
 [[nodiscard]] int distance_column(const ReadTable& table) {
   const std::set<std::string> names = {"distance", "dist",    "gauge", "dial",
@@ -564,6 +593,15 @@ struct PointColumns {
   answers.target = target;
   if (!sockets_file.empty()) answers.layout = {Vector3<double>::Zero()};
   answers = with_proposals(robot, answers);
+  if (target == InitTarget::gravity) {
+    const std::array<int, 3> read = accelerometer_columns(table, file);
+    return fmt::format(
+        "\nconditions:  # what the accelerometer reads, m/s^2\n  ax: {}\n  ay: {}\n  az: {}\n"
+        "\nobservations:\n - sensor: {}  # its axes\n   frame: {}\n   form: quaternion\n"
+        "   constant_poses: [[0, 0, 0, 0, 0, 0, 1]]\n",
+        column_name(table, read[0]), column_name(table, read[1]), column_name(table, read[2]),
+        holder_of(answers), answers.target_frame);
+  }
   const bool is_pose =
       target == InitTarget::plane || target == InitTarget::line || target == InitTarget::distance;
   std::string tip = "   constant: [0, 0, 0]\n";
@@ -652,6 +690,8 @@ std::string proposed_columns(const Robot& robot, std::string_view text, const st
     taken.insert(socket_column(table));
   } else if (*touched == InitTarget::distance) {
     taken.insert(distance_column(table));
+  } else if (*touched == InitTarget::gravity) {
+    for (const int column : accelerometer_columns(table, file)) taken.insert(column);
   }
   for (const PointColumns& point : points) {
     taken.insert(point.xyz.begin(), point.xyz.end());

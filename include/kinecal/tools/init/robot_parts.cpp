@@ -199,9 +199,11 @@ InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
     propose(answers.target_frame, propose_frame(robot, {"smr", "reflector"}));
     propose(answers.tracker_frame, propose_frame(robot, {"tracker_frame", "laser_frame"}));
   } else if (is_touched(target)) {
-    propose(answers.target_frame, target == InitTarget::distance
-                                      ? propose_frame(robot, {"gauge", "distance_sensor"})
-                                      : propose_frame(robot, {"tip", "tool_tip"}));
+    propose(answers.carrier, answers.base);
+    propose(answers.target_frame,
+            target == InitTarget::gravity    ? propose_frame(robot, {"accelerometer"})
+            : target == InitTarget::distance ? propose_frame(robot, {"gauge", "distance_sensor"})
+                                             : propose_frame(robot, {"tip", "tool_tip"}));
     if (!answers.places.empty()) return answers;
     if (target == InitTarget::sockets && answers.length && answers.layout.empty()) {
       answers.layout = {Vector3<double>::Zero(), {*answers.length, 0.0, 0.0}};
