@@ -30,7 +30,7 @@ const char* const kCell = R"(<robot name="cell">
 </robot>
 )";
 
-const char* const kConfig = R"(base_link: base
+const char* const kCellConfig = R"(base_link: base
 models:
  - {name: left_hand, type: chain3d, frame: left_hand}
  - {name: right_hand, type: chain3d, frame: right_hand}
@@ -53,7 +53,8 @@ error_blocks:
 )";
 
 /// Observations of a sample: sensors, and the frames of their features.
-Sample sample(const std::vector<std::pair<std::string, std::string>>& seen, int first_id = 0) {
+Sample compared_sample(const std::vector<std::pair<std::string, std::string>>& seen,
+                       int first_id = 0) {
   Sample all;
   for (const auto& [sensor, frame] : seen) {
     Observation& one = all.observations.emplace_back(Observation{sensor, {}});
@@ -74,9 +75,9 @@ class FrameGaps : public testing::Test {
   }
   Robot robot_ = parse_urdf(kCell, "cell.urdf");
   Diagnostics diagnostics_;
-  Config config_ = parse_config(kConfig, "c.yaml", diagnostics_);
-  Sample left_ = sample({{"left_hand", "left_board"}, {"left_eye", "left_eye"}});
-  Sample right_ = sample({{"right_hand", "right_board"}, {"right_eye", "right_eye"}});
+  Config config_ = parse_config(kCellConfig, "c.yaml", diagnostics_);
+  Sample left_ = compared_sample({{"left_hand", "left_board"}, {"left_eye", "left_eye"}});
+  Sample right_ = compared_sample({{"right_hand", "right_board"}, {"right_eye", "right_eye"}});
 };
 
 TEST_F(FrameGaps, AreNoneWhereAnArmMovesWhatACameraSees) {
@@ -99,14 +100,15 @@ TEST_F(FrameGaps, AreTwoArmsThatNothingRelates) {
   EXPECT_THAT(found[0].sensors, ElementsAre("right_eye", "right_hand"));
   EXPECT_THAT(found[0].others, testing::Contains("left_eye"));
   // A camera that sees both closes it.
-  const Sample both = sample({{"right_hand", "right_board"}, {"left_eye", "left_eye"}});
+  const Sample both = compared_sample({{"right_hand", "right_board"}, {"left_eye", "left_eye"}});
   EXPECT_THAT(gaps(none_known, {left_, right_, both}), IsEmpty());
-  const Sample other_ids = sample({{"right_hand", "right_board"}, {"left_eye", "left_eye"}}, 100);
+  const Sample other_ids =
+      compared_sample({{"right_hand", "right_board"}, {"left_eye", "left_eye"}}, 100);
   EXPECT_EQ(gaps(none_known, {left_, right_, other_ids}).size(), 1u) << "no corner in common";
 }
 
 TEST_F(FrameGaps, AreACameraThatSeesOnlyAPosterOfItsOwn) {
-  const Sample poster = sample({{"wall", "poster"}, {"right_eye", "right_eye"}});
+  const Sample poster = compared_sample({{"wall", "poster"}, {"right_eye", "right_eye"}});
   const std::vector<std::string> unknown = {"left_board", "left_eye_joint", "right_eye_joint",
                                             "poster"};
   check_frame_gaps(robot_, "base", config_.steps.front(), unknown, std::vector{left_, poster},
@@ -118,7 +120,7 @@ TEST_F(FrameGaps, AreACameraThatSeesOnlyAPosterOfItsOwn) {
                   "samples in which one of them sees what one of 'left_eye' and 'left_hand' "
                   "sees or holds; or, if a pose is known, write it into "
                   "free_frames_initial_values and do not free it"));
-  const Sample by_left = sample({{"wall", "poster"}, {"left_eye", "left_eye"}});
+  const Sample by_left = compared_sample({{"wall", "poster"}, {"left_eye", "left_eye"}});
   EXPECT_THAT(gaps(unknown, {left_, poster, by_left}), IsEmpty());
 }
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
+#include <cstdio>
 
 #include "kinecal/solve/fit_frames.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
@@ -76,31 +76,45 @@ TEST_F(Cell, FromTenPosesIsBetterThanSingleSolves) {
   std::vector<MetricCell> single;
   for (int camera = 1; camera <= 4; ++camera) single.push_back(this->cell({camera}));
   double together = 0.0, alone = 0.0;
+  int count = 0;
   constexpr std::size_t kSets = 12;  // every twelfth pose: ten or eleven
   for (std::size_t set = 0; set < kSets; ++set) {
     const auto is_in = [&](std::size_t s) { return s % kSets == set; };
-    const CalibrationResult result = calibrate(assembled(cell, cell.some(is_in), true));
+    const std::vector<Sample> samples = cell.some(is_in);
+    Calibration calibration = assembled(cell, samples, false);
+    const JudgedResult judged = calibrate_and_judge(calibration, samples);
+    const CalibrationResult& result = judged.result;
     ASSERT_TRUE(result.converged) << set << ": " << result.termination;
     for (std::size_t c = 0; c < 4; ++c) {
       const double off =
           test::distance(test::pose_of_camera(result.table, cell.cameras[c]), cell.truth[c]).metres;
-      EXPECT_LE(off, 5e-3) << "set " << set << ", camera " << c + 1;
+      double variance = 0.0;
+      for (const char* axis : {"x", "y", "z"}) {
+        const auto sigma = judged.deviation(result.table.find(cell.cameras[c] + "_joint_" + axis));
+        ASSERT_TRUE(sigma) << cell.cameras[c];
+        variance += *sigma * *sigma;
+      }
+      EXPECT_LE(off, kMostMetres + 3.0 * std::sqrt(variance))
+          << "set " << set << ", " << cell.cameras[c];
       const std::vector<Sample> own = single[c].some(is_in);
       const auto views = std::count_if(own.begin(), own.end(), [](const Sample& sample) {
         return sample.observations.size() > 1;
       });
       if (views < 3) continue;  // alone it would be anywhere
       const CalibrationResult one = calibrate(assembled(single[c], own, true));
-      together += off * off;
-      alone += std::pow(
+      const double off_alone =
           test::distance(test::pose_of_camera(one.table, single[c].cameras[0]), single[c].truth[0])
-              .metres,
-          2);
+              .metres;
+      if (off_alone > 0.05) continue;  // it is lost, which would decide the sum
+      together += off * off;
+      alone += off_alone * off_alone;
+      ++count;
     }
   }
+  EXPECT_GE(count, 30);
   EXPECT_LE(together, alone);
-  RecordProperty("rms_together_mm", fmt::format("{:.3f}", 1e3 * std::sqrt(together)));
-  RecordProperty("rms_alone_mm", fmt::format("{:.3f}", 1e3 * std::sqrt(alone)));
+  std::printf("from ten poses: %d cameras are %.2f mm off in one solve, %.2f mm alone (rms)\n",
+              count, 1e3 * std::sqrt(together / count), 1e3 * std::sqrt(alone / count));
 }
 
 TEST_F(Cell, HalvesAgreeWithinTheirPlusMinus) {
