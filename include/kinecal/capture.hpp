@@ -37,6 +37,7 @@
 #include "kinecal/capture/finders/scan_finder.hpp"
 #include "kinecal/capture/finders/spread.hpp"
 #include "kinecal/capture/finders/surface_point.hpp"
+#include "kinecal/capture/finders/touch_finder.hpp"
 #include "kinecal/capture/finders/turn_votes.hpp"
 #include "kinecal/capture/finders/view_checks.hpp"
 #include "kinecal/capture/image.hpp"

@@ -38,3 +38,4 @@
 #include "kinecal/tools/simulation/photographs.hpp"
 #include "kinecal/tools/simulation/pose_samples.hpp"
 #include "kinecal/tools/simulation/simulation_plan.hpp"
+#include "kinecal/tools/simulation/touched_samples.hpp"

@@ -99,12 +99,11 @@ TEST_F(Touched, FourPosesGiveTheToolsCenterPoint) {
 
 /// How many poses it takes, before anybody has taken one; the tip is where the URDF has it.
 TEST_F(Touched, PlansPosesInWhichTheTipTouches) {
-  for (const char* target : {"point", "plane", "distance"}) {
-    ASSERT_EQ(
-        kinecal(std::string("init --urdf ur5e.urdf --arm tool0 --force --target ") + target).code,
-        0);
-    const Outcome planned = kinecal(
-        "plan --urdf ur5e.urdf --config calibrate.yaml --accuracy '1 mm' -o poses.yaml --force");
+  for (const auto& [target, tip] : std::map<std::string, std::string>{
+           {"point", "tip"}, {"plane", "tip"}, {"distance", "gauge"}}) {
+    ASSERT_EQ(kinecal("init --urdf ur5e.urdf --arm tool0 --force --target " + target).code, 0);
+    const Outcome planned = kinecal("plan --urdf ur5e.urdf --config calibrate.yaml --accuracy '" +
+                                    tip + " 1 mm' -o poses.yaml --force");
     EXPECT_EQ(planned.code, 0) << target << planned.out << planned.err;
     EXPECT_TRUE(fs::exists(folder_ / "poses.yaml")) << planned.out;
   }
