@@ -167,7 +167,8 @@ TEST(TouchedTargets, ShowAllZerosButTheFirstAndTheLast) {
   for (const InitTarget target : kTouched) {
     const std::string six = six_joints().shown(target), seven = seven_joints().shown(target);
     std::cout << fmt::format("  {:8} {:8} {:8}\n", to_string(target), six, seven);
-    EXPECT_EQ(six, "-xxxx-") << to_string(target);
+    // Three axes of a UR5e are parallel: gravity shows the sum of their zeros.
+    EXPECT_EQ(six, target == InitTarget::gravity ? "-x--x-" : "-xxxx-") << to_string(target);
     EXPECT_EQ(seven, "-xxxxx-") << to_string(target);
   }
 }

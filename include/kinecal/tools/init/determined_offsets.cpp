@@ -520,8 +520,11 @@ OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
   if (!many) add(measured.sensor_frame, poses.sensor_axes());
   for (const std::string& frame : frames) add(frame, detail::axes_of(false));
   std::array<bool, 6> target_axes = detail::axes_of(measured.is_point);
-  if (measured.contact != Contact::none)
+  if (measured.contact == Contact::gravity) {
+    target_axes = {false, false, false, true, true, true};
+  } else if (measured.contact != Contact::none) {
     target_axes[5] = false;  // about the direction of a distance
+  }
   add(measured.target_frame, target_axes);
 
   OffsetEffects effects;

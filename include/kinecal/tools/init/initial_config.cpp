@@ -399,12 +399,15 @@ bool free_arm_and_head(InitPlan& plan, const Robot& robot, const InitAnswers& an
 [[nodiscard]] Contact contact_of(InitTarget target) {
   switch (target) {
     case InitTarget::plane:
+    case InitTarget::distance:
       return Contact::plane;
     case InitTarget::line:
       return Contact::line;
     case InitTarget::sphere:
     case InitTarget::bar:
       return Contact::sphere;
+    case InitTarget::gravity:
+      return Contact::gravity;
     default:
       return Contact::point;
   }

@@ -104,7 +104,7 @@ std::vector<InitAnswers> answers_of_all(const Robot& robot, const InitAnswers& g
                                         const std::vector<std::string>& cameras) {
   detail::check_once(arms, "--arm");
   detail::check_once(cameras, "--camera");
-  if (arms.size() > 1 && (is_touched(given.target) || given.target == InitTarget::distance)) {
+  if (arms.size() > 1 && is_touched(given.target)) {
     throw InputError(fmt::format("--arm: '{}' is of one arm; make a configuration for each",
                                  to_string(given.target, given.board)));
   }
