@@ -120,7 +120,8 @@ std::string refusal(const Robot& robot, const std::string& existing) {
 Robot two_ur() {
   std::vector<Joint> joints;
   for (const std::string arm : {"left_", "right_"}) {
-    for (Joint joint : ur(arm).joints()) {
+    const Robot one = ur(arm);
+    for (Joint joint : one.joints()) {
       if (joint.type == JointType::fixed) joint.name = arm + joint.name;
       joint.parent = joint.parent == "l0" ? "base" : arm + joint.parent;
       joint.child = arm + joint.child;
