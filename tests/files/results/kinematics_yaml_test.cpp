@@ -177,7 +177,7 @@ TEST(KinematicsYaml, AFileOfFrankaKeepsItsForm) {
   const std::vector<JointPatch> moved = {{"fr3_joint4", 0.01, {}}};
   const std::string text = kinematics_yaml(robot, moved, franka_file(), "k.yaml");
   EXPECT_THAT(
-      text, AllOf(HasSubstr("\njoint1:\n  kinematic:\n    x: 0\n    y: 0.1\n"),
+      text, AllOf(HasSubstr("\njoint1:\n  kinematic:\n    x: 0.0\n    y: 0.1\n"),
                   HasSubstr("\njoint8:\n"), Not(HasSubstr("fr3_")), Not(HasSubstr("kinematics:"))));
   const YAML::Node of = YAML::Load(text)["joint4"]["kinematic"];
   const Matrix3<double> expected =
