@@ -85,7 +85,7 @@ class FrameTies {
       for (const std::string& place : places) {
         if (virtual_.contains(place)) hang(place, model.frame);
       }
-      sensors_[model.name].insert(places.begin(), places.end());
+      if (!places.empty()) sensors_[model.name].insert(places.begin(), places.end());
     }
     for (const BlockConfig& block : step_.error_blocks) {
       const ModelConfig *a = model_of(block, 0), *b = model_of(block, 1);
@@ -102,31 +102,17 @@ class FrameTies {
     }
   }
 
+  /// What hangs on one rigid part by unknown frames only may be anywhere.
   [[nodiscard]] std::vector<FrameGap> gaps() const {
-    std::map<std::string, std::pair<std::set<std::string>, std::set<std::string>>> groups;
-    for (const OpenFrame& frame :
-         open_) {  // by group: its frames, and the rigid parts that they are on
-      const std::string parent = tied_.root(frame.parent), child = tied_.root(frame.child);
-      if (parent == child) continue;
-      for (const auto& [group, outside] : {std::pair(parent, frame.child), {child, frame.parent}}) {
-        groups[group].first.insert(frame.name);
-        groups[group].second.insert(rigid_.root(outside));
-      }
-    }
+    std::set<std::string> parts;
+    for (const OpenFrame& frame : open_)
+      parts.insert({rigid_.root(frame.parent), rigid_.root(frame.child)});
     std::vector<FrameGap> gaps;
-    for (const auto& of_group : groups) {
-      const std::string& group = of_group.first;
-      const auto& [frames, parts] = of_group.second;
-      if (group == tied_.root(base_) || parts.size() > 1) continue;
-      FrameGap gap{{frames.begin(), frames.end()}, {}, {}};
-      for (const auto& [sensor, places] : sensors_) {
-        const bool is_in = std::any_of(places.begin(), places.end(), [&](const std::string& place) {
-          return tied_.root(place) == group;
-        });
-        (is_in ? gap.sensors : gap.others).push_back(sensor);
+    for (const std::string& part : parts) {
+      for (FrameGap& gap : gaps_beyond(part)) {
+        const auto same = [&](const FrameGap& other) { return other.frames == gap.frames; };
+        if (std::none_of(gaps.begin(), gaps.end(), same)) gaps.push_back(std::move(gap));
       }
-      if (!gap.sensors.empty())
-        gaps.push_back(std::move(gap));  // else it is no part of the samples
     }
     return gaps;
   }
@@ -156,6 +142,37 @@ class FrameTies {
       if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
     }
     return places;
+  }
+
+  /// The groups that only the unknown frames on a rigid part join to the base.
+  [[nodiscard]] std::vector<FrameGap> gaps_beyond(const std::string& part) const {
+    LinkGroups joined = tied_;
+    std::vector<std::pair<std::string, std::string>> beyond;  // frames, and the link behind each
+    for (const OpenFrame& frame : open_) {
+      const bool is_parent = rigid_.root(frame.parent) == part;
+      if (!is_parent && rigid_.root(frame.child) != part) {
+        joined.join(frame.parent, frame.child);
+      } else {
+        beyond.emplace_back(frame.name, is_parent ? frame.child : frame.parent);
+      }
+    }
+    std::map<std::string, std::set<std::string>> frames;  // by group
+    for (const auto& [name, link] : beyond) {
+      const std::string group = joined.root(link);
+      if (group != joined.root(base_) && group != joined.root(part)) frames[group].insert(name);
+    }
+    std::vector<FrameGap> gaps;
+    for (const auto& of_group : frames) {
+      FrameGap gap{{of_group.second.begin(), of_group.second.end()}, {}, {}};
+      for (const auto& [sensor, places] : sensors_) {
+        const bool is_in = std::any_of(places.begin(), places.end(), [&](const std::string& place) {
+          return joined.root(place) == of_group.first;
+        });
+        (is_in ? gap.sensors : gap.others).push_back(sensor);
+      }
+      if (!gap.sensors.empty()) gaps.push_back(std::move(gap));  // else the samples have none of it
+    }
+    return gaps;
   }
 
   /// Adds a virtual frame beyond a link.

@@ -4,9 +4,8 @@
 //   base -- flange ~ board        ~ : a frame of unknown pose     -- : joints whose positions are recorded
 //   base ~ camera                 what a sample compares (board and camera) hangs together
 //
-// Links hang together by joints and by what samples compare.  A group apart from the base is tied to it if its unknown frames
-// are on parts of the robot that move against each other, as board and camera above.  If all of them are on one rigid part, the
-// group may be anywhere.
+// Links hang together by joints and by what samples compare.  Board and camera above are tied to the robot, because their
+// unknown frames are on parts that move against each other.  What hangs on one rigid part by unknown frames only may be anywhere.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

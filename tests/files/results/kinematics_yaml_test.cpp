@@ -120,7 +120,8 @@ std::string refusal(const Robot& robot, const std::string& existing) {
 Robot two_ur() {
   std::vector<Joint> joints;
   for (const std::string arm : {"left_", "right_"}) {
-    for (Joint joint : ur(arm).joints()) {
+    const Robot one = ur(arm);
+    for (Joint joint : one.joints()) {
       if (joint.type == JointType::fixed) joint.name = arm + joint.name;
       joint.parent = joint.parent == "l0" ? "base" : arm + joint.parent;
       joint.child = arm + joint.child;
@@ -176,7 +177,7 @@ TEST(KinematicsYaml, AFileOfFrankaKeepsItsForm) {
   const std::vector<JointPatch> moved = {{"fr3_joint4", 0.01, {}}};
   const std::string text = kinematics_yaml(robot, moved, franka_file(), "k.yaml");
   EXPECT_THAT(
-      text, AllOf(HasSubstr("\njoint1:\n  kinematic:\n    x: 0\n    y: 0.1\n"),
+      text, AllOf(HasSubstr("\njoint1:\n  kinematic:\n    x: 0.0\n    y: 0.1\n"),
                   HasSubstr("\njoint8:\n"), Not(HasSubstr("fr3_")), Not(HasSubstr("kinematics:"))));
   const YAML::Node of = YAML::Load(text)["joint4"]["kinematic"];
   const Matrix3<double> expected =

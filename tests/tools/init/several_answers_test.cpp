@@ -51,6 +51,12 @@ TEST(SeveralAnswers, ACameraGoesWithEachArmThatDoesNotCarryIt) {
   EXPECT_THAT(names, ElementsAre("hand_eye_right_eye", "hand_eye_left_eye"));
   EXPECT_THAT(step.models, SizeIs(4));
   EXPECT_EQ(config.base_link, "torso");
+  names.clear();
+  for (const auto& frame : step.free_frames) names.push_back(frame.name);
+  EXPECT_THAT(names, testing::UnorderedElementsAre("left_hand_checkerboard", "right_joint_0",
+                                                   "right_eye_joint", "right_hand_checkerboard",
+                                                   "left_eye_joint"))
+      << "one of the two bases";
 }
 
 TEST(SeveralAnswers, AreRefusedIfALinkOccursTwiceOrACameraSeesNothing) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -707,11 +708,37 @@ void add_new(std::vector<InitEntry>& list, std::vector<InitEntry> more) {
   }
 }
 
+/// Which arms and heads the free frames of earlier plans relate, by their first joints.
+using Related = std::map<std::string, int>;
+
+/// Holds the frame of the part that carries a camera, if frames of earlier plans relate it to the arm: of two arms that see each
+/// other, both bases would be free.
+void relate_once(const Robot& robot, const InitAnswers& answers, Related& related, InitPlan& one) {
+  if (!needs_arm(answers.target) || !needs_camera(answers.target)) return;
+  std::vector<ChainJoint> arm = movers(robot, answers.base, answers.arm);
+  std::vector<ChainJoint> head = movers(robot, answers.base, answers.camera);
+  remove_common(arm, head);
+  if (arm.empty() || head.empty()) return;
+  const auto group = [&](const std::string& joint) {
+    return related.emplace(joint, static_cast<int>(related.size())).first->second;
+  };
+  const std::string& moved = head.front().name;
+  const int of_arm = group(arm.front().name), of_head = group(moved);
+  if (of_arm != of_head) {
+    for (auto& [joint, number] : related) number = number == of_head ? of_arm : number;
+    return;
+  }
+  if (require_mount(robot, answers, {answers.base, answers.arm}).name == moved) return;
+  std::erase_if(one.free_frames, [&](const InitEntry& frame) { return frame.name == moved; });
+}
+
 /// The plans of all answers as one.  Blocks that compare get the names of what they compare.
 [[nodiscard]] InitPlan plan_all(const Robot& robot, const std::vector<InitAnswers>& all) {
   InitPlan plan;
+  Related related;
   for (const InitAnswers& answers : all) {
     InitPlan one = plan_initial_config(robot, answers);
+    if (all.size() > 1) relate_once(robot, answers, related, one);
     for (InitEntry& block : one.error_blocks) {
       if (all.size() == 1 || block.name.starts_with("restrict_")) continue;
       if (needs_camera(answers.target)) block.name += "_" + answers.camera_name;

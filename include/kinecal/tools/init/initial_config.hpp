@@ -32,7 +32,8 @@ void check_init_camera_name(const std::string& option, const std::string& name,
 /// @throws InputError  "--option: what is wrong; what to do": a link that does not exist or cannot
 ///                     be reached, or a target that determines nothing of this robot
 [[nodiscard]] std::string initial_config(const Robot& robot, const InitAnswers& given);
-/// The same for several cameras or arms in one problem.  What the samples of one of them determine, those of all determine, too.
+/// The same for several cameras or arms in one problem: frees what the samples of each camera with each arm determine, but the frame
+/// between two arms once.
 /// @param given  answers for each camera with what it sees: of one base
 [[nodiscard]] std::string initial_config(const Robot& robot, const std::vector<InitAnswers>& given);
 
