@@ -240,6 +240,10 @@ void answer_names(const Robot& robot, InitOptions& options, InitAnswers& answers
 void check_given(const Robot& robot, const InitOptions& options) {
   Diagnostics diagnostics;
   if (!options.base.empty()) check_init_link(robot, "--base", options.base, diagnostics);
+  for (const std::string& word : options.targets) {
+    const auto target = init_target(word);
+    if (target && options.length) check_init_length(target->target, *options.length, diagnostics);
+  }
   if (!options.touched_link.empty()) {
     check_init_link(robot, "--touched-link", options.touched_link, diagnostics);
   }

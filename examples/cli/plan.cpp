@@ -289,7 +289,7 @@ void reached(const PoseChoice& choice, const PoseSet& set, PlanFindings& finding
 /// Says what calibrations leave without noise, if that spoils the accuracy.
 void check_remaining(const StudyInput& input, const PoseChoice& choice, const PoseSet& set,
                      double wanted, PlanFindings& findings, const ProgressMeter& meter) {
-  if (!std::isfinite(set.position) || input.is_of_surface) return;
+  if (!std::isfinite(set.position) || input.is_of_surface || input.is_touched) return;
   const double tolerated = tolerated_error(set.position, std::max(wanted, set.position));
   const RemainingError remaining =
       remaining_error(input, with_existing(choice, set.chosen), tolerated, meter);

@@ -119,7 +119,8 @@ std::string comparison_text(const SelectPosesOptions& options, const StudyInput&
               : fmt::format("  random sets need {} for as much (median)\n",
                             counted(static_cast<std::size_t>(equal), "pose"));
   // Of the new ones alone; a calibration of the robot's surface would have to associate.
-  if (options.trials < 2 || !choice.have.empty() || input.is_of_surface) return text;
+  const bool is_simulated = !input.is_of_surface && !input.is_touched;
+  if (options.trials < 2 || !choice.have.empty() || !is_simulated) return text;
   const auto of = [&](const std::vector<int>& set) {
     return simulated_text(simulated(input, choice, set, options.trials, meter));
   };

@@ -286,6 +286,11 @@ int study_in(const Processes& processes, const StudyOptions& options) {
           "good; simulate such robots with 'kinecal simulate --target robot --seed N', and "
           "calibrate each");
     }
+    if (input->is_touched) {
+      throw InputError(
+          "a study simulates what a sensor measures, and a tip that touches something has none; "
+          "'kinecal plan' says what poses give");
+    }
     if (options.ruined >= 0.0) input->setup.ruined = options.ruined;
     input->setup.free_targets = options.free_targets;
     input->keep_ruined = !(input->setup.ruined > 0.0);

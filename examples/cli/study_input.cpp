@@ -365,6 +365,7 @@ std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
   }
   ParameterTable places;
   std::optional<ParameterTable> recorded;
+  input->is_touched = touch.has_value();
   if (touch) {
     take_touches(files, *touch, poses, *input);
   } else if (files.samples.empty()) {

@@ -35,6 +35,8 @@ struct StudyInput {
   /// It compares the robot with its own surface: what is seen of it belongs together already, so calibrations of it are not
   /// simulated.
   bool is_of_surface = false;
+  bool is_touched =
+      false;  ///< a tip touches something in generated poses: there is no sensor to simulate
   /// Standard deviation of the judged pose, metres, by the calibration of recorded clouds or masks; nullopt: of others.
   std::optional<double> calibrated = {};
   bool keep_ruined = true;  ///< calibrate with all samples

@@ -196,12 +196,15 @@ TEST_F(Init, ProposesNoTargetOfACameraWhereThereIsNone) {
   const Outcome asked = type("ur5e", "", "leds\n\n\n\n\n\n");
   EXPECT_EQ(asked.code, 0) << asked.out;
   EXPECT_THAT(asked.out,
-              AllOf(HasSubstr("measured against? [tracker]: "), Not(HasSubstr("checkerboard")),
+              AllOf(HasSubstr("1  tracker: "), HasSubstr("point: nothing measures"),
+                    Not(HasSubstr("checkerboard")),
                     HasSubstr("no link of the URDF looks like a camera; add it to the URDF")));
   EXPECT_EQ(check("ur5e").code, 0);
   const Outcome silent = init("ur5e", "--force");
-  EXPECT_EQ(silent.code, 0) << silent.err;
-  EXPECT_THAT(silent.out, HasSubstr("--target tracker (the only one)"));
+  EXPECT_EQ(silent.code, 1);
+  EXPECT_THAT(silent.err,
+              HasSubstr("--target is required, because the input is not a terminal; use "
+                        "one of tracker, point, tool"));
 }
 
 TEST_F(Init, RefusesBeforeItAsks) {

@@ -67,9 +67,10 @@ TEST(InitialCapture, HasTheNamesOfTheConfiguration) {
       SCOPED_TRACE(std::string(word.word) + " " + type);
       const std::string text = initial_capture(robot, answers);
       const bool in_pixels = answers.camera_type == "camera2d";
-      EXPECT_EQ(text.empty(), word.target == InitTarget::tracker ||
-                                  word.target == InitTarget::robot ||
-                                  (word.target == InitTarget::leds && in_pixels));
+      EXPECT_EQ(text.empty(),
+                word.target == InitTarget::tracker || word.target == InitTarget::robot ||
+                    word.target == InitTarget::distance || word.target == InitTarget::gravity ||
+                    (word.target == InitTarget::leds && in_pixels));
       if (text.empty()) continue;
       Diagnostics diagnostics;
       const auto capture = read_written(filled_in(text), diagnostics, read_capture_config);
@@ -82,6 +83,10 @@ TEST(InitialCapture, HasTheNamesOfTheConfiguration) {
       for (const ModelConfig& model : step.models) models.push_back(model.name);
       for (const FreeFrameConfig& frame : step.free_frames) frames.push_back(frame.name);
       for (const CaptureFinder& finder : capture.finders) {
+        if (is_touched(word.target)) {
+          EXPECT_THAT(frames, testing::Contains(std::get<TouchFinder>(finder.settings).frame));
+          continue;
+        }
         EXPECT_EQ(finder.type.ends_with("2d"), in_pixels);
         const TargetSettings* target = target_of(finder.settings);
         if (target == nullptr) continue;

@@ -181,7 +181,9 @@ class TouchedTarget : public testing::TestWithParam<InitTarget> {};
 TEST_P(TouchedTarget, FindsTheZerosWithPlusMinusThatCover) {
   double sum = 0.0;
   int count = 0;
-  std::vector<TouchingArm> arms = {six_joints(), seven_joints()};
+  // Gravity shows the sum of three zeros of a UR5e.
+  std::vector<TouchingArm> arms = {seven_joints()};
+  if (GetParam() != InitTarget::gravity) arms.push_back(six_joints());
   for (TouchingArm& arm : arms) {
     for (unsigned seed = 1; seed <= static_cast<unsigned>(test::repetitions(4, 2)); ++seed) {
       const std::vector<Sample> samples = arm.samples(GetParam(), seed, 2e-4);

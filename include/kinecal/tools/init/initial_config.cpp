@@ -819,13 +819,7 @@ void check_answers(const Robot& robot, const InitAnswers& answers) {
     check_init_frame(robot, "--target", place, diagnostics);
   }
   if (is_touched(target)) check_init_link(robot, "--touched-link", answers.carrier, diagnostics);
-  if (answers.length && !has_length(target)) {
-    diagnostics.error({"--length", 0},
-                      fmt::format("{} has no length; sockets, sphere and bar have one",
-                                  to_string(target, answers.board)));
-  } else if (answers.length && !(*answers.length > 0.0 && *answers.length < 10.0)) {
-    diagnostics.error({"--length", 0}, fmt::format("{} is no length in metres", *answers.length));
-  }
+  if (answers.length) check_init_length(target, *answers.length, diagnostics);
   const bool floor = target == InitTarget::ground || answers.with_ground;
   if (floor && !needs_camera(target)) {
     diagnostics.error(
@@ -859,6 +853,17 @@ void check_init_frame(const Robot& robot, const std::string& option, const std::
     diagnostics.error({option, 0}, "'" + name +
                                        "' is a link or a joint of the robot, or resembles one; a "
                                        "frame that the URDF does not contain needs another name");
+  }
+}
+
+void check_init_length(InitTarget target, double length, Diagnostics& diagnostics) {
+  constexpr double kMost = 10.0;  // metres
+  if (!has_length(target)) {
+    diagnostics.error(
+        {"--length", 0},
+        fmt::format("{} has no length; sockets, sphere and bar have one", to_string(target)));
+  } else if (!(length > 0.0 && length < kMost)) {
+    diagnostics.error({"--length", 0}, fmt::format("{} is no length in metres", length));
   }
 }
 

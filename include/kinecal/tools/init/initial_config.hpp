@@ -23,6 +23,10 @@ void check_init_link(const Robot& robot, const std::string& option, const std::s
 void check_init_frame(const Robot& robot, const std::string& option, const std::string& name,
                       Diagnostics& diagnostics);
 
+/// Reports a length that a target does not have, or that is none.
+/// @param length  metres
+void check_init_length(InitTarget target, double length, Diagnostics& diagnostics);
+
 /// Reports a camera name that another model already has.
 void check_init_camera_name(const std::string& option, const std::string& name,
                             Diagnostics& diagnostics);

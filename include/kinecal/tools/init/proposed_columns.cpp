@@ -640,7 +640,8 @@ struct PointColumns {
                         "   constant: [0, 0, 0]\n",
                         *sockets_in(table, column).begin(), name)
                   : fmt::format(
-                        "   frame: {}\n   table: {}  # where the sockets are\n   match: {}\n"
+                        "   frame: {}\n   unit: metres\n   table: {}  # where the sockets are\n   "
+                        "match: {}\n"
                         "   points: [[x, y, z]]\n",
                         answers.places.front(), name_to_yaml(sockets_file), name);
   }
@@ -680,8 +681,8 @@ std::string proposed_columns(const Robot& robot, std::string_view text, const st
                              const std::string& tip) {
   using namespace detail;
   const ReadTable table = read_table(text, file);
+  const ColumnOfJoint joints = proposed_joints(robot, table, file, given && is_touched(*given));
   const std::optional<InitTarget> touched = touched_target(table, given, file);
-  const ColumnOfJoint joints = proposed_joints(robot, table, file, touched.has_value());
   std::set<int> taken;
   for (const auto& [joint, column] : joints) taken.insert(column);
   const ColumnOfJoint velocities = proposed_velocities(robot, table, joints);
