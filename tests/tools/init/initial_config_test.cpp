@@ -55,7 +55,8 @@ std::vector<Case> every_case(const Robot& robot) {
         if (!cameras.empty()) answers.camera = cameras.front();
         answers.base = propose_base(robot, answers.arm);
         const bool pixels = answers.camera_type == "camera2d";
-        if (word.target == InitTarget::robot) continue;  // has a test of its own
+        // They have tests of their own.
+        if (word.target == InitTarget::robot || is_touched(word.target)) continue;
         if (word.target == InitTarget::tracker && (ground || pixels)) continue;
         if (word.target == InitTarget::ground && (ground || pixels)) continue;
         if (pixels && ground) continue;

@@ -176,6 +176,19 @@ TEST(TouchedTargets, ShowAllZerosButTheFirstAndTheLast) {
   }
 }
 
+TEST(TouchedTargets, AreConfigurationsWithoutAWarning) {
+  for (const InitTargetWord& word : kInitTargets) {
+    if (!is_touched(word.target)) continue;
+    for (const TouchingArm& arm : {six_joints(), seven_joints()}) {
+      Diagnostics diagnostics;
+      (void)parse_config(initial_config(arm.robot(), arm.answers(word.target)), "calibrate.yaml",
+                         diagnostics);
+      EXPECT_THAT(diagnostics.errors, testing::IsEmpty()) << word.word;
+      EXPECT_THAT(diagnostics.warnings, testing::IsEmpty()) << word.word;
+    }
+  }
+}
+
 class TouchedTarget : public testing::TestWithParam<InitTarget> {};
 
 TEST_P(TouchedTarget, FindsTheZerosWithPlusMinusThatCover) {
