@@ -29,11 +29,11 @@ TEST(OpenBlocks, PointToLine) {
 }
 TEST(OpenBlocks, PointOnPlane) {
   test::check_rows_of(PointOnPlane{}, {"arm", "tracker"});
-  test::check_rows_of(PointOnPlane{}, {"arm", "body"});
+  test::check_rows_of(PointOnPlane{}, {"camera", "body"});
 }
 TEST(OpenBlocks, PointOnLine) {
   test::check_rows_of(PointOnLine{}, {"arm", "tracker"});
-  test::check_rows_of(PointOnLine{}, {"arm", "body"});
+  test::check_rows_of(PointOnLine{}, {"camera", "body"});
 }
 TEST(OpenBlocks, GravitySeen) {
   test::check_rows_of(GravitySeen{{0.1, -0.2, 9.8}}, {"body"});

@@ -146,7 +146,11 @@ std::vector<Sample> open_samples(const BasicProblem<S>& problem, std::span<const
   std::uniform_real_distribution<double> any(-0.5, 0.5), pixel(50, 400);
   const auto vector = [&] { return Vector3<double>{any(random), any(random), any(random)}; };
   for (Sample& sample : samples) {
-    sample.conditions = {{"temperature", 20.0 + 30.0 * any(random)}, {"load", any(random)}};
+    sample.conditions = {{"temperature", 20.0 + 30.0 * any(random)},
+                         {"load", any(random)},
+                         {"ax", 1.3},
+                         {"ay", -0.4},
+                         {"az", 9.6}};
     for (const char* name : {"elbow_point", "left", "body", "tracker", "wire"}) {
       Observation& seen = sample.observations.emplace_back(Observation{name, {}, camera_info()});
       const std::string frame = name == std::string("tracker") ? "board" : "";
