@@ -5,7 +5,6 @@
 // R turns the accelerometer's axes into the base: the pose of a feature of a chain6d sensor.  G is what it would read with
 // the axes of the base, (0, 0, 9.80665) if z points up: parameters of the block, <block>_x _y _z.  Free, they allow for a
 // base that is not level and for a scale that is not 1.
-// Source: Hollerbach, Khalil, Gautier, Model Identification, Springer Handbook of Robotics, 2016: inclinometers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -169,6 +169,29 @@ TEST(ProposedColumns, AskWhichOfTwoPointsWasMeasured) {
       << "torques";
 }
 
+/// A number of the row is no socket, and a gyroscope no accelerometer.
+TEST(ProposedColumns, AreOfWhatATipTouched) {
+  const std::string joints = "q1,q2,q3,q4,q5,q6";
+  const auto rows = [&](const std::vector<std::string>& more) {
+    std::string text;
+    for (const std::string& cells : more) text += std::string(kSix) + "," + cells + "\n";
+    return text;
+  };
+  EXPECT_THAT(refusal_of(joints + ",point\n" + rows({"1", "2", "3", "4"})),
+              HasSubstr("say what the tip touched in each row: --target with one of point"));
+  EXPECT_THAT(columns_of(joints + ",socket\n" + rows({"A", "B", "A", "B"})),
+              AllOf(HasSubstr("frame: socket  # and the cell: socket_A"),
+                    HasSubstr("frame_column: socket"), HasSubstr("constant: [0, 0, 0]")));
+  const std::string imu =
+      joints + ",ax,ay,az,gx,gy,gz\n" + rows({"0,0,9.8,1,2,3", "0,9.8,0,1,2,3"});
+  EXPECT_THAT(
+      proposed_columns(ur5e(), imu, "log.csv", InitTarget::gravity),
+      AllOf(HasSubstr("ax: ax\n"), HasSubstr("az: az\n"), HasSubstr("Not used: gx, gy, gz")));
+  EXPECT_THAT(proposed_columns(ur5e(), joints + ",gauge_mm\n" + rows({"101", "250"}), "log.csv",
+                               InitTarget::distance),
+              AllOf(HasSubstr("unit: millimetres"), HasSubstr("points: [[0, 0, gauge_mm]]")));
+}
+
 TEST(ProposedColumns, RefuseWhatIsNoTable) {
   EXPECT_THAT(refusal_of(""), HasSubstr("log.csv: is not a table"));
   EXPECT_THAT(refusal_of("a,b\nc,d\ne,f\n"),

@@ -502,14 +502,12 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
                   holder_of(answers), answers.arm);
   plan.models.back().fields.front().second = "chain6d";
   free_touched_offsets(plan, robot, answers);
-  for (const char* axis : {"contact_x", "contact_y", "contact_z"}) {
-    plan.free_params.push_back(
-        {axis[8] == 'x' ? "What it would read with the axes of link " + name_to_yaml(answers.base) +
-                              ": the base may lean, and its scale need not be 1."
-                        : std::string(),
-         axis,
-         {}});
-  }
+  plan.free_params.push_back({"What it would read with the axes of link " +
+                                  name_to_yaml(answers.base) +
+                                  ": the base may lean, and its scale need not be 1.",
+                              "contact_x",
+                              {}});
+  for (const char* other : {"contact_y", "contact_z"}) plan.free_params.push_back({"", other, {}});
   free_axes(plan, answers.target_frame,
             "How the accelerometer is turned on link " + name_to_yaml(answers.arm) +
                 ".  The URDF does not contain this frame.",

@@ -509,13 +509,21 @@ struct PointColumns {
 
 // Tables of a tip that touches something: joints, and which socket.
 
-/// The column that names the socket of each row; -1 if there is none.
+/// The sockets that a column names, each once.
+[[nodiscard]] std::set<std::string> sockets_in(const ReadTable& table, int column) {
+  const std::vector<std::string>& texts = table.columns[static_cast<std::size_t>(column)].texts;
+  return {texts.begin(), texts.end()};
+}
+
+/// The column that names the socket of each row, each of several rows; -1 if there is none.  One that counts rows is none.
 [[nodiscard]] int socket_column(const ReadTable& table) {
   const std::set<std::string> names = {"socket", "sockets", "place", "hole", "nest",    "seat",
                                        "cone",   "station", "point", "ball", "fixture", "marker"};
   for (int c = 0; c < static_cast<int>(table.columns.size()) && table.header; ++c) {
     const std::vector<std::string>& words = table.columns[static_cast<std::size_t>(c)].words;
-    if (!words.empty() && names.contains(words.front())) return c;
+    if (words.empty() || !names.contains(words.front())) continue;
+    const std::size_t rows = table.columns[static_cast<std::size_t>(c)].texts.size();
+    if (2 * sockets_in(table, c).size() <= rows) return c;
   }
   return -1;
 }
@@ -524,8 +532,8 @@ struct PointColumns {
 /// @throws InputError  if there is not one
 [[nodiscard]] std::array<int, 3> accelerometer_columns(const ReadTable& table,
                                                        const std::string& file) {
-  const std::set<std::string> names = {"a",   "acc",     "accel", "accelerometer", "acceleration",
-                                       "imu", "gravity", "g"};
+  const std::set<std::string> names = {"a",   "acc",    "accel", "accelerometer", "acceleration",
+                                       "imu", "gravity"};  // gx is a gyroscope's
   std::array<int, 3> found = {-1, -1, -1};
   for (int c = 0; c < static_cast<int>(table.columns.size()) && table.header; ++c) {
     std::vector<std::string> words = table.columns[static_cast<std::size_t>(c)].words;
@@ -542,7 +550,7 @@ struct PointColumns {
     const bool is_named =
         !words.empty() && std::all_of(words.begin(), words.end(),
                                       [&](const std::string& w) { return names.contains(w); });
-    if (is_named) found[axis] = c;
+    if (is_named && found[axis] < 0) found[axis] = c;
   }
   if (std::all_of(found.begin(), found.end(), [](int c) { return c >= 0; })) return found;
   throw InputError(fmt::format("{}: no three columns are called ax, ay, az (or acc_x ...); {}",
@@ -558,12 +566,6 @@ struct PointColumns {
     if (column.is_number && has_word(column, names)) return c;
   }
   return -1;
-}
-
-/// The sockets that a column names, each once.
-[[nodiscard]] std::set<std::string> sockets_in(const ReadTable& table, int column) {
-  const std::vector<std::string>& texts = table.columns[static_cast<std::size_t>(column)].texts;
-  return {texts.begin(), texts.end()};
 }
 
 /// What the tip touches, by the columns if it is not given; nullopt: nothing, there are measured points.
