@@ -274,7 +274,11 @@ class OutlineFit {
   void hold(std::span<const Sample> samples, const Eigen::VectorXd& values,
             const std::optional<double>& found) {
     OutlineState state{{.values = values}, {}};
-    found ? void(gate_ = *found) : set_gate(samples, 0, state);
+    if (found) {
+      gate_ = *found;
+    } else {
+      set_gate(samples, 0, state);
+    }
   }
 
  private:

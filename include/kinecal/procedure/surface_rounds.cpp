@@ -243,7 +243,11 @@ class SurfaceFit {
   void hold(std::span<const Sample> samples, const Eigen::VectorXd& values,
             const std::optional<double>& found) {
     RoundState state{{.values = values}, {}};
-    found ? void(gate_ = *found) : set_gate(samples, 0, state);
+    if (found) {
+      gate_ = *found;
+    } else {
+      set_gate(samples, 0, state);
+    }
   }
 
   /// The median distances of clouds that had no say, with free joints and with held ones; nullopt if free ones bring them
@@ -565,8 +569,11 @@ void report_fit(const SurfaceBlock& block, const BlockConfig& of, double gate,
                     "searched for"
                   : "");
     // Points of links that are not listed may be near the listed ones.
-    block.is_whole&& is_fitted ? diagnostics.error(of.place, why)
-                               : diagnostics.doubt(of.place, why);
+    if (block.is_whole && is_fitted) {
+      diagnostics.error(of.place, why);
+    } else {
+      diagnostics.doubt(of.place, why);
+    }
     return;
   }
   const LossType type = loss_type(of.loss.type);

@@ -25,6 +25,14 @@ namespace {
   return block.type == PointToPoint::kType ? Contact::point : Contact::none;
 }
 
+/// The frame of the tip: the last one that is free in x, y and z; a plane or a line is not.  Of an accelerometer, the only one.
+[[nodiscard]] const FreeFrameConfig& frame_of_tip(const std::vector<FreeFrameConfig>& frames) {
+  const auto tip = std::find_if(frames.rbegin(), frames.rend(), [](const FreeFrameConfig& frame) {
+    return frame.axes[0] && frame.axes[1] && frame.axes[2];
+  });
+  return tip == frames.rend() ? frames.back() : *tip;
+}
+
 [[nodiscard]] bool turns(const FreeFrameConfig& frame) {
   return frame.axes[3] || frame.axes[4] || frame.axes[5];
 }
@@ -52,7 +60,7 @@ std::optional<ConfiguredTouch> configured_touch(const Config& config) {
     }
   }
   if (links.size() != block->models.size() || step.free_frames.empty()) return std::nullopt;
-  const FreeFrameConfig& tip = step.free_frames.back();
+  const FreeFrameConfig& tip = detail::frame_of_tip(step.free_frames);
   for (const FreeFrameConfig& frame : step.free_frames) {
     // A tracker's frame turns, that of a point does not.
     if (touch.target.contact == Contact::point && detail::turns(frame)) return std::nullopt;

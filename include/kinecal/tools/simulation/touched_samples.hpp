@@ -18,7 +18,7 @@ namespace kinecal {
 struct ConfiguredTouch {
   MeasuredTarget target;      ///< with a contact
   std::string held, touched;  ///< sensors: of the tip, and of what it touches (of gravity: empty)
-  std::string tip;            ///< frame of the tip: the last of the free ones
+  std::string tip;            ///< frame of the tip
   std::vector<std::string> places = {};  ///< frames of what is touched
 };
 
