@@ -96,12 +96,12 @@ namespace {
   return all;
 }
 
-/// The median +- of the pose in question over the limits of the joints; 0 if it is not known there.
+/// The median +- of a pose over the limits of the joints; 0 if it is not known there.
 [[nodiscard]] double deviation_elsewhere(const AnyProblem& problem, const Assessment& step,
-                                         ParameterValues values) {
+                                         const PoseUncertainty& pose, ParameterValues values) {
   constexpr int kPoses = 64;
   std::vector<double> deviations;
-  for (const KnownPoint& point : workspace_map(problem, step, values, kPoses)) {
+  for (const KnownPoint& point : workspace_map(problem, step, pose, values, kPoses)) {
     deviations.push_back(point.deviation);
   }
   return deviations.empty() ? 0.0 : median_of(std::move(deviations));
@@ -209,9 +209,15 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
                                detail::known_by_pixels(problem, found.maps));
   found.alike = alike_pixels(problem, fit, found.maps, samples);
   found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
-  if (const auto frames = compared_frames(problem, samples)) {
-    found.pose = pose_uncertainty(problem, inside, values, fit, found.uncertainty, samples,
-                                  frames->first, frames->second);
+  for (const ComparedFrames& frames : compared_frames(problem, samples)) {
+    PoseUncertainty pose = pose_uncertainty(problem, inside, values, fit, found.uncertainty,
+                                            samples, frames.frame, frames.in);
+    pose.elsewhere = detail::deviation_elsewhere(problem, found, pose, values);
+    if (found.pose) {
+      found.further.push_back(std::move(pose));
+    } else {
+      found.pose = std::move(pose);
+    }
   }
   for (std::size_t b = 1; b < options.between.size(); ++b) {
     const FrameOnRobot frame = frame_named(problem, samples, options.between[b]);
@@ -221,7 +227,6 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
                                                frame_named(problem, samples, options.between[a])));
     }
   }
-  if (found.pose) found.elsewhere = detail::deviation_elsewhere(problem, found, values);
   return found;
 }
 

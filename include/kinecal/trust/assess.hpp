@@ -52,8 +52,8 @@ struct Assessment {
   std::vector<IdleGroup> idle;                ///< whose parameters improve nothing
   std::vector<PriorPull> pulls;               ///< priors that the samples contradict
   std::optional<PoseUncertainty> pose;        ///< of the frames that the first error block compares
+  std::vector<PoseUncertainty> further;       ///< the same of each further camera
   std::vector<PoseUncertainty> between;       ///< of each pair of AssessOptions::between
-  double elsewhere = 0.0;    ///< +- of that position over the limits of the joints, median, metres
   std::int64_t rows = 0;     ///< residuals, without priors
   double used = 0.0;         ///< of these, by poses that samples have of their own
   std::int64_t samples = 0;  ///< their number

@@ -495,10 +495,14 @@ std::vector<ProjectionMap> projection_maps(const KnownSolution& solution) {
   for (std::size_t s = 0; s < problem.sensors().size(); ++s) {
     const MountedSensor& mounted = problem.sensors()[s];
     if (!mounted.sensor().is_camera() || measures_depth(mounted.sensor())) continue;
+    const std::vector<int>& own_parameters = mounted.parameters();
+    const bool frees_some = std::any_of(own_parameters.begin(), own_parameters.end(), [&](int p) {
+      return p >= 0 && solution.free.column(p) >= 0;
+    });
+    if (!frees_some) continue;  // before looking at its pixels
     detail::SeenByCamera seen = detail::seen_by(solution, places, static_cast<int>(s));
     if (seen.pixels.empty()) continue;
     const detail::SolvedProjection camera(mounted, solution.free, solution.values, seen.settings);
-    if (camera.columns().empty()) continue;
     if (maps.empty()) halves = detail::halves_of(solution);
     std::optional<Eigen::VectorXd> apart;
     const auto own = [&](std::size_t half) {
