@@ -116,8 +116,7 @@ void SessionFollower::calibrate_surface(std::span<const Sample> ahead, FollowedS
   online.known = all.is_usable();
   for (const std::span<const Sample> poses : {std::span<const Sample>(all.samples), ahead}) {
     if (poses.empty()) continue;
-    const PoseUncertainty pose =
-        pose_at(problem, step, values, poses, frames_->frame, frames_->in);
+    const PoseUncertainty pose = pose_at(problem, step, values, poses, frames_->frame, frames_->in);
     online.known = online.known && pose.determined;
     online.position = std::max(online.position, pose.position);
     online.rotation = std::max(online.rotation, pose.rotation);

@@ -88,7 +88,7 @@ class SessionFollower {
   std::vector<Sample> samples_;          ///< all of the session that suit the configuration
   std::optional<OnlineCalibration> online_;
   std::optional<ComparedFrames> frames_;  ///< whose pose it waits for
-  int misfits_ = 0;  ///< samples in a row that do not fit
+  int misfits_ = 0;                       ///< samples in a row that do not fit
   std::set<int>
       left_out_{};  ///< numbers of samples that calibrations of a surface left out, from 1
 };

@@ -31,6 +31,26 @@ inline void collect(AnyEvaluator& evaluator, ParameterValues values, bool deriva
   });
 }
 
+/// The columns that an error block affects, and their rows of a basis.
+struct TermBasis {
+  std::vector<int> columns;
+  Eigen::MatrixXd rows;  ///< (columns x coordinates)
+};
+
+/// Of each error block.
+[[nodiscard]] inline std::vector<TermBasis> bases_of_terms(const AnyEvaluator& evaluator,
+                                                           const Eigen::MatrixXd& basis) {
+  std::vector<TermBasis> all(static_cast<std::size_t>(evaluator.problem().num_terms()));
+  for (std::size_t t = 0; t < all.size(); ++t) {
+    for (const int p : evaluator.problem().touched_parameters(static_cast<int>(t))) {
+      const int column = evaluator.free().column(p);
+      if (column >= 0) all[t].columns.push_back(column);
+    }
+    all[t].rows = basis(all[t].columns, Eigen::all);
+  }
+  return all;
+}
+
 /// Weighted residuals of a block, and rho' of its features.
 inline void weigh(const Term& term, const TermResiduals& rows, Eigen::Ref<Eigen::VectorXd> r,
                   Eigen::Ref<Eigen::VectorXd> loss) {
@@ -57,38 +77,50 @@ KINECAL_INLINE Coordinates determined_coordinates(const AnyProblem& problem, con
   return detail::coordinates_of(detail::sample_information(problem, free, values));
 }
 
-KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues values,
-                                    const Coordinates& coordinates, bool derivatives) {
+namespace detail {
+
+/// linear_fit() without its Hessian.
+inline LinearFit linear_rows(AnyEvaluator& evaluator, ParameterValues values,
+                             const Coordinates& coordinates, bool derivatives) {
   LinearFit fit;
   fit.coordinates = coordinates;
   const Eigen::MatrixXd& basis = coordinates.basis;
   std::vector<TermResiduals> all;
-  detail::collect(evaluator, values, derivatives, fit.blocks, all);
+  collect(evaluator, values, derivatives, fit.blocks, all);
   Eigen::Index rows = 0;
   for (const RowBlock& block : fit.blocks) rows += block.size;
   fit.residual.resize(rows);
   fit.loss.resize(rows);
   fit.used.setZero(rows);
   fit.jacobian.resize(derivatives ? rows : 0, derivatives ? basis.cols() : 0);
+  const auto bases = derivatives ? bases_of_terms(evaluator, basis) : std::vector<TermBasis>{};
   Eigen::Index first = 0;
   for (RowBlock& block : fit.blocks) {
     const TermResiduals& from = all[static_cast<std::size_t>(block.first)];
     const Term& term = evaluator.problem().term(block.term);
-    detail::weigh(term, from, fit.residual.segment(first, block.size),
-                  fit.loss.segment(first, block.size));
+    weigh(term, from, fit.residual.segment(first, block.size), fit.loss.segment(first, block.size));
     if (from.used.size() > 0) fit.used.segment(first, block.size) = from.used;
     if (derivatives) {
       const Eigen::VectorXd weights = term.weight * from.factor;
-      fit.jacobian.middleRows(first, block.size).noalias() =
-          weights.asDiagonal() * (from.jacobian * basis);
+      const TermBasis& by = bases[static_cast<std::size_t>(block.term)];
+      const Eigen::MatrixXd weighted = weights.asDiagonal() * from.jacobian(Eigen::all, by.columns);
+      fit.jacobian.middleRows(first, block.size).noalias() = weighted * by.rows;
     }
     block.first = first;
     first += block.size;
   }
-  const NormalEquations priors =
-      detail::prior_equations(evaluator.problem(), evaluator.free(), values);
+  const NormalEquations priors = prior_equations(evaluator.problem(), evaluator.free(), values);
   fit.prior_gradient = basis.transpose() * priors.gradient;
   fit.prior_hessian = basis.transpose() * priors.hessian * basis;
+  return fit;
+}
+
+}  // namespace detail
+
+KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues values,
+                                    const Coordinates& coordinates, bool derivatives) {
+  LinearFit fit = detail::linear_rows(evaluator, values, coordinates, derivatives);
+  if (derivatives) fit.hessian = information(fit, fit.loss);
   return fit;
 }
 
@@ -100,12 +132,66 @@ KINECAL_INLINE Eigen::MatrixXd information(const LinearFit& fit, const Eigen::Ve
   return sum.selfadjointView<Eigen::Lower>();
 }
 
+KINECAL_INLINE RowSums::RowSums(Eigen::Index coordinates)
+    : information(Eigen::MatrixXd::Zero(coordinates, coordinates)),
+      gradient(Eigen::VectorXd::Zero(coordinates)) {}
+
+KINECAL_INLINE RowSums& RowSums::operator+=(const RowSums& other) {
+  information += other.information;
+  gradient += other.gradient;
+  return *this;
+}
+
+KINECAL_INLINE RowSums row_sums(const LinearFit& fit, const RowBlock& block,
+                                const Eigen::VectorXd& weights, const Eigen::VectorXd& residual) {
+  const auto rows = fit.jacobian.middleRows(block.first, block.size);
+  const auto of_rows = weights.segment(block.first, block.size);
+  RowSums sums(fit.size());
+  const LinearFit::RowMajor weighted = of_rows.cwiseSqrt().asDiagonal() * rows;
+  Eigen::MatrixXd lower = sums.information;
+  lower.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+  sums.information = lower.selfadjointView<Eigen::Lower>();
+  sums.gradient.noalias() =
+      rows.transpose() * of_rows.cwiseProduct(residual.segment(block.first, block.size));
+  return sums;
+}
+
+KINECAL_INLINE std::vector<RowSums> sums_without_parts(const LinearFit& fit,
+                                                       const Eigen::VectorXd& weights,
+                                                       const std::vector<int>& part) {
+  const int last = part.empty() ? -1 : *std::max_element(part.begin(), part.end());
+  const auto parts = static_cast<std::size_t>(last + 1);
+  std::vector<RowSums> own(parts, RowSums(fit.size()));
+  RowSums before(fit.size());  // of rows in no part, then of the parts before one, too
+  for (const RowBlock& block : fit.blocks) {
+    const int of = part[static_cast<std::size_t>(block.sample)];
+    RowSums& sums = of < 0 ? before : own[static_cast<std::size_t>(of)];
+    sums += row_sums(fit, block, weights, fit.residual);
+  }
+  std::vector<RowSums> without(parts, RowSums(fit.size()));
+  for (std::size_t p = parts; p-- > 1;) {  // of the parts after one
+    without[p - 1] = without[p];
+    without[p - 1] += own[p];
+  }
+  for (std::size_t p = 0; p < parts; ++p) {
+    without[p] += before;
+    before += own[p];
+  }
+  return without;
+}
+
+KINECAL_INLINE Eigen::VectorXd step_to_minimum(const LinearFit& fit, const RowSums& sums,
+                                               double priors) {
+  const detail::Spectrum spectrum(sums.information + priors * fit.prior_hessian);
+  return -spectrum.pseudo_inverse() * (sums.gradient + priors * fit.prior_gradient);
+}
+
 KINECAL_INLINE Eigen::VectorXd step_to_minimum(const LinearFit& fit, const Eigen::VectorXd& weights,
                                                double priors) {
-  const Eigen::VectorXd gradient =
-      fit.jacobian.transpose() * weights.cwiseProduct(fit.residual) + priors * fit.prior_gradient;
-  const detail::Spectrum spectrum(information(fit, weights, priors));
-  return -spectrum.pseudo_inverse() * gradient;
+  RowSums sums(fit.size());
+  sums.information = information(fit, weights, 0.0);
+  sums.gradient = fit.jacobian.transpose() * weights.cwiseProduct(fit.residual);
+  return step_to_minimum(fit, sums, priors);
 }
 
 KINECAL_INLINE Eigen::VectorXd stepped(const LinearFit& fit, const FreeSet& free,
@@ -135,7 +221,7 @@ inline bool descend(AnyEvaluator& evaluator, const LinearFit& fit, const Eigen::
   for (int i = 0; i < kHalvings; ++i, step *= 0.5) {
     const Eigen::VectorXd values = stepped(fit, evaluator.free(), numbers(at.values), step);
     try {
-      const LinearFit there = linear_fit(evaluator, numbers(values), fit.coordinates, false);
+      const LinearFit there = linear_rows(evaluator, numbers(values), fit.coordinates, false);
       const double after = cost(there, values);
       if (!(after <= before)) continue;
       at = {values, there.residual};
@@ -149,9 +235,9 @@ inline bool descend(AnyEvaluator& evaluator, const LinearFit& fit, const Eigen::
 }  // namespace detail
 
 KINECAL_INLINE Refit refit(AnyEvaluator& evaluator, ParameterValues values, const LinearFit& fit,
-                           const Eigen::VectorXd& weights, double priors, double settled) {
+                           const Eigen::VectorXd& weights, const Eigen::VectorXd& first,
+                           double priors, double settled) {
   Refit at{Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values)), fit.residual};
-  const Eigen::VectorXd first = step_to_minimum(fit, weights, priors);
   bool falls = detail::descend(evaluator, fit, weights, priors, settled, first, at);
   constexpr int kSteps = 10;
   for (int i = 1; falls && i < kSteps; ++i) {
@@ -159,7 +245,8 @@ KINECAL_INLINE Refit refit(AnyEvaluator& evaluator, ParameterValues values, cons
     const Eigen::VectorXd promised = fit.residual + fit.jacobian * first;
     const double off = (promised - at.residual).squaredNorm();
     if (i == 1 && off < settled * at.residual.squaredNorm()) break;
-    const LinearFit next = linear_fit(evaluator, detail::numbers(at.values), fit.coordinates);
+    const LinearFit next =
+        detail::linear_rows(evaluator, detail::numbers(at.values), fit.coordinates, true);
     falls = detail::descend(evaluator, next, weights, priors, settled,
                             step_to_minimum(next, weights, priors), at);
   }

@@ -189,7 +189,7 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.neighbours = neighbours(problem, fit, single);
   const PoseGroups poses = joined(single, found.neighbours.together);
   found.size = detail::robot_size(problem);
-  const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
+  const Eigen::MatrixXd inverse = detail::Spectrum(fit.hessian).pseudo_inverse();
   found.noise = estimate_noise(problem, fit, inverse);
   set_repeats(fit, single, found.noise);
   const Eigen::MatrixXd effects = detail::joint_effects(problem, values, samples, inside, fit);

@@ -40,7 +40,8 @@ TEST(WorkspaceMap, ReachesBeyondTheSamples) {
   test::NoisyScene scene(20);
   const Assessment found = scene.solve_and_assess();
   const Eigen::VectorXd values = scene.values();
-  const auto map = workspace_map(scene.solved(), found, *found.pose, test::NoisyScene::span(values), 300);
+  const auto map =
+      workspace_map(scene.solved(), found, *found.pose, test::NoisyScene::span(values), 300);
   ASSERT_EQ(map.size(), 300u);
   double least = 1.0, most = 0.0;
   for (const KnownPoint& point : map) {
@@ -58,7 +59,8 @@ TEST(WorkspaceMap, FollowsTheCameraIfTheOtherFrameStands) {
   Assessment found = scene.solve_and_assess();
   found.pose->frame = found.pose->link = "base_link";  // in the camera's frame
   const Eigen::VectorXd values = scene.values();
-  const auto map = workspace_map(scene.solved(), found, *found.pose, test::NoisyScene::span(values), 50);
+  const auto map =
+      workspace_map(scene.solved(), found, *found.pose, test::NoisyScene::span(values), 50);
   ASSERT_EQ(map.size(), 50u);
   double farthest = 0.0;
   for (const KnownPoint& point : map) {
@@ -75,7 +77,8 @@ TEST(WorkspaceMap, IsEmptyWhereNothingIsFree) {
   Assessment found = scene.solve_and_assess();
   found.parameters.clear();
   const Eigen::VectorXd values = scene.values();
-  EXPECT_TRUE(workspace_map(scene.solved(), found, *found.pose, test::NoisyScene::span(values), 10).empty());
+  EXPECT_TRUE(workspace_map(scene.solved(), found, *found.pose, test::NoisyScene::span(values), 10)
+                  .empty());
 }
 
 }  // namespace

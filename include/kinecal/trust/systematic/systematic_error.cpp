@@ -121,7 +121,7 @@ class ErrorSearch {
         noise_(noise),
         common_(common),
         freedom_(freedom_of(fitted.fit, poses)),
-        inverse_(Spectrum(information(fitted.fit, fitted.fit.loss)).pseudo_inverse()),
+        inverse_(Spectrum(fitted.fit.hessian).pseudo_inverse()),
         joints_(fitted, effects, inverse_),
         changes_(fitted, inverse_) {
     constexpr double kFew = 6.0;
