@@ -76,6 +76,10 @@ namespace detail {
 [[nodiscard]] LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues values,
                                    const Coordinates& coordinates, bool derivatives = true);
 
+/// linear_fit() without its Hessian.
+[[nodiscard]] LinearFit linear_rows(AnyEvaluator& evaluator, ParameterValues values,
+                                    const Coordinates& coordinates, bool derivatives = true);
+
 /// J^T J of rows with weights, priors included.
 /// @param weights  (rows) of squared residuals
 /// @param priors   factor of the priors

@@ -31,26 +31,6 @@ inline void collect(AnyEvaluator& evaluator, ParameterValues values, bool deriva
   });
 }
 
-/// The columns that an error block affects, and their rows of a basis.
-struct TermBasis {
-  std::vector<int> columns;
-  Eigen::MatrixXd rows;  ///< (columns x coordinates)
-};
-
-/// Of each error block.
-[[nodiscard]] inline std::vector<TermBasis> bases_of_terms(const AnyEvaluator& evaluator,
-                                                           const Eigen::MatrixXd& basis) {
-  std::vector<TermBasis> all(static_cast<std::size_t>(evaluator.problem().num_terms()));
-  for (std::size_t t = 0; t < all.size(); ++t) {
-    for (const int p : evaluator.problem().touched_parameters(static_cast<int>(t))) {
-      const int column = evaluator.free().column(p);
-      if (column >= 0) all[t].columns.push_back(column);
-    }
-    all[t].rows = basis(all[t].columns, Eigen::all);
-  }
-  return all;
-}
-
 /// Weighted residuals of a block, and rho' of its features.
 inline void weigh(const Term& term, const TermResiduals& rows, Eigen::Ref<Eigen::VectorXd> r,
                   Eigen::Ref<Eigen::VectorXd> loss) {
@@ -77,49 +57,46 @@ KINECAL_INLINE Coordinates determined_coordinates(const AnyProblem& problem, con
   return detail::coordinates_of(detail::sample_information(problem, free, values));
 }
 
-namespace detail {
-
-/// linear_fit() without its Hessian.
-inline LinearFit linear_rows(AnyEvaluator& evaluator, ParameterValues values,
-                             const Coordinates& coordinates, bool derivatives) {
+KINECAL_INLINE LinearFit linear_rows(AnyEvaluator& evaluator, ParameterValues values,
+                                     const Coordinates& coordinates, bool derivatives) {
   LinearFit fit;
   fit.coordinates = coordinates;
   const Eigen::MatrixXd& basis = coordinates.basis;
   std::vector<TermResiduals> all;
-  collect(evaluator, values, derivatives, fit.blocks, all);
+  detail::collect(evaluator, values, derivatives, fit.blocks, all);
   Eigen::Index rows = 0;
   for (const RowBlock& block : fit.blocks) rows += block.size;
   fit.residual.resize(rows);
   fit.loss.resize(rows);
   fit.used.setZero(rows);
   fit.jacobian.resize(derivatives ? rows : 0, derivatives ? basis.cols() : 0);
-  const auto bases = derivatives ? bases_of_terms(evaluator, basis) : std::vector<TermBasis>{};
   Eigen::Index first = 0;
   for (RowBlock& block : fit.blocks) {
     const TermResiduals& from = all[static_cast<std::size_t>(block.first)];
     const Term& term = evaluator.problem().term(block.term);
-    weigh(term, from, fit.residual.segment(first, block.size), fit.loss.segment(first, block.size));
+    detail::weigh(term, from, fit.residual.segment(first, block.size),
+                  fit.loss.segment(first, block.size));
     if (from.used.size() > 0) fit.used.segment(first, block.size) = from.used;
     if (derivatives) {
       const Eigen::VectorXd weights = term.weight * from.factor;
-      const TermBasis& by = bases[static_cast<std::size_t>(block.term)];
-      const Eigen::MatrixXd weighted = weights.asDiagonal() * from.jacobian(Eigen::all, by.columns);
-      fit.jacobian.middleRows(first, block.size).noalias() = weighted * by.rows;
+      const std::vector<int> columns = detail::columns_of(from.jacobian);
+      const Eigen::MatrixXd weighted = weights.asDiagonal() * from.jacobian(Eigen::all, columns);
+      const Eigen::MatrixXd by = basis(columns, Eigen::all);
+      fit.jacobian.middleRows(first, block.size).noalias() = weighted * by;
     }
     block.first = first;
     first += block.size;
   }
-  const NormalEquations priors = prior_equations(evaluator.problem(), evaluator.free(), values);
+  const NormalEquations priors =
+      detail::prior_equations(evaluator.problem(), evaluator.free(), values);
   fit.prior_gradient = basis.transpose() * priors.gradient;
   fit.prior_hessian = basis.transpose() * priors.hessian * basis;
   return fit;
 }
 
-}  // namespace detail
-
 KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues values,
                                     const Coordinates& coordinates, bool derivatives) {
-  LinearFit fit = detail::linear_rows(evaluator, values, coordinates, derivatives);
+  LinearFit fit = linear_rows(evaluator, values, coordinates, derivatives);
   if (derivatives) fit.hessian = information(fit, fit.loss);
   return fit;
 }
@@ -246,7 +223,7 @@ KINECAL_INLINE Refit refit(AnyEvaluator& evaluator, ParameterValues values, cons
     const double off = (promised - at.residual).squaredNorm();
     if (i == 1 && off < settled * at.residual.squaredNorm()) break;
     const LinearFit next =
-        detail::linear_rows(evaluator, detail::numbers(at.values), fit.coordinates, true);
+        linear_rows(evaluator, detail::numbers(at.values), fit.coordinates, true);
     falls = detail::descend(evaluator, next, weights, priors, settled,
                             step_to_minimum(next, weights, priors), at);
   }

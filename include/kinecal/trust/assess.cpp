@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "kinecal/geometry/median.hpp"
+#include "kinecal/solve/determined_spectrum.hpp"
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/captures/ruined.hpp"
 #include "kinecal/trust/inside_bounds.ipp"
@@ -173,12 +174,15 @@ std::optional<double> Assessment::deviation(int parameter) const {
 Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValues values,
                   std::span<const Sample> samples, const AssessOptions& options) {
   Assessment found;
-  found.observability = observability(problem, free, values);
+  const detail::SampleInformation of_free = detail::sample_information(problem, free, values);
+  if (free.size() > 0) found.observability = detail::observability_of(problem, free, of_free);
   const FreeSet inside = detail::inside_bounds(problem, free, values, found.at_bound);
   found.parameters = inside.parameters();
   const auto evaluator = problem.evaluator(inside, 1);
   const LinearFit fit =
-      linear_fit(*evaluator, values, determined_coordinates(problem, inside, values));
+      linear_fit(*evaluator, values,
+                 inside.size() == free.size() ? detail::coordinates_of(of_free)
+                                              : determined_coordinates(problem, inside, values));
   found.rows = fit.residual.size();
   found.used = fit.used.sum();
   found.samples = problem.num_samples();

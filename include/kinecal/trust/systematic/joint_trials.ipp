@@ -165,16 +165,17 @@ struct JointTrack {
 class JointTrials {
  public:
   /// @param effects  (rows x joints) see joint_effects()
+  /// @param slopes   of the same samples
   JointTrials(const FittedSamples& fitted, const Eigen::MatrixXd& effects,
-              const Eigen::MatrixXd& inverse)
+              const Eigen::MatrixXd& inverse, MeasurementSlopes& slopes)
       : fitted_(fitted), inverse_(inverse) {
     add_joints(effects);
     for (const MountedSensor& sensor : fitted_.problem.sensors()) {
       const std::string& name = sensor.mount().name;
-      for (int axis = 0; axis < 3; ++axis) add_axes(name, {axis});
+      for (int axis = 0; axis < 3; ++axis) add_axes(slopes, name, {axis});
       if (sensor.sensor().delivers(Quantity::pixel)) continue;
-      add_axes(name, {0, 1, 2});
-      add_axes(name, {0, 1, 2}, mean_point(name));
+      add_axes(slopes, name, {0, 1, 2});
+      add_axes(slopes, name, {0, 1, 2}, mean_point(name));
     }
   }
 
@@ -293,7 +294,7 @@ class JointTrials {
   /// @param axes    of a sensor: one, or all: its scale
   /// @param center  stays where it is.  Far from the points, a free frame takes up nearly all of a scale, and what is
   ///                left looks like rounding
-  void add_axes(const std::string& sensor, const std::vector<int>& axes,
+  void add_axes(MeasurementSlopes& slopes, const std::string& sensor, const std::vector<int>& axes,
                 const Vector3<double>& center = Vector3<double>::Zero()) {
     constexpr double kStep = 1e-6;  // relative
     const auto is_off = [&](const Feature& feature) {
@@ -305,17 +306,14 @@ class JointTrials {
       return seen != nullptr && std::any_of(seen->features.begin(), seen->features.end(), is_off);
     };
     if (std::none_of(fitted_.samples.begin(), fitted_.samples.end(), any_is_off)) return;
-    const auto longer = [&](Sample& sample) {
-      for (Observation& seen : sample.observations) {
-        if (seen.sensor != sensor) continue;
-        for (Feature& feature : seen.features) {
-          for (const int axis : axes) {
-            feature.point(axis) += kStep * (feature.point(axis) - center(axis));
-          }
+    const auto longer = [&](Observation& seen) {
+      for (Feature& feature : seen.features) {
+        for (const int axis : axes) {
+          feature.point(axis) += kStep * (feature.point(axis) - center(axis));
         }
       }
     };
-    const Eigen::VectorXd slope = sample_slopes(fitted_, longer, kStep);
+    const Eigen::VectorXd slope = slopes(sensor, longer, kStep);
     if (slope.isZero(0.0)) return;
     const bool is_scale = axes.size() > 1;
     const std::string what =
