@@ -103,9 +103,15 @@ KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues val
 
 KINECAL_INLINE Eigen::MatrixXd information(const LinearFit& fit, const Eigen::VectorXd& weights,
                                            double priors) {
+  constexpr Eigen::Index kAtOnce = 256;  // weighted rows that stay in the cache
   Eigen::MatrixXd sum = priors * fit.prior_hessian;
-  const LinearFit::RowMajor weighted = weights.cwiseSqrt().asDiagonal() * fit.jacobian;
-  sum.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+  LinearFit::RowMajor weighted;
+  for (Eigen::Index first = 0; first < weights.size(); first += kAtOnce) {
+    const Eigen::Index size = std::min(kAtOnce, weights.size() - first);
+    weighted = weights.segment(first, size).cwiseSqrt().asDiagonal() *
+               fit.jacobian.middleRows(first, size);
+    sum.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+  }
   return sum.selfadjointView<Eigen::Lower>();
 }
 

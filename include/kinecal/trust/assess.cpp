@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <map>
 #include <set>
@@ -196,16 +197,20 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   const Eigen::MatrixXd inverse = detail::Spectrum(fit.hessian).pseudo_inverse();
   found.noise = estimate_noise(problem, fit, inverse);
   set_repeats(fit, single, found.noise);
-  const Eigen::MatrixXd effects = detail::joint_effects(problem, values, samples, inside, fit);
-  found.common = common_noise(fit, effects, single, found.noise);
-  detail::set_uncertainty(problem, inside, values, fit, inverse, poses,
-                          feature_links(problem, fit, samples), found);
+  // What poses share, the +- and systematic errors, beside what single samples show.
+  std::future<void> shared = std::async(std::launch::async, [&] {
+    const Eigen::MatrixXd effects = detail::joint_effects(problem, values, samples, inside, fit);
+    found.common = common_noise(fit, effects, single, found.noise);
+    detail::set_uncertainty(problem, inside, values, fit, inverse, poses,
+                            feature_links(problem, fit, samples), found);
+    found.systematic = systematic_error({problem, inside, fit, values, samples}, poses, effects,
+                                        found.noise, found.common);
+  });
   found.held_out = detail::held_out_of(*evaluator, values, fit, samples, poses, options);
   found.captures = capture_errors(problem, fit, single);
   detail::keep_what_foretells(*evaluator, values, fit, samples, poses, options, found);
   found.noise_without_bad = noise_without_bad(fit, found.captures);
-  found.systematic = systematic_error({problem, inside, fit, values, samples}, poses, effects,
-                                      found.noise, found.common);
+  shared.get();
   found.folded = folded_lenses(problem, free, values, samples);
   found.maps =
       projection_maps({*evaluator, inside, values, fit, found.uncertainty, samples, poses});
