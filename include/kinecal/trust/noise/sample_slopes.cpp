@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 namespace kinecal::detail {
@@ -76,31 +74,32 @@ Eigen::VectorXd MeasurementSlopes::operator()(const std::string& sensor,
     });
     if (is_its) terms.push_back(t);
   }
-  std::set<int> samples;  // in which an error block compares it
+  std::vector<int> samples;  // in which an error block compares it
   for (const RowBlock& block : fitted_.fit.blocks) {
-    if (std::binary_search(terms.begin(), terms.end(), block.term)) samples.insert(block.sample);
+    const bool is_its = std::binary_search(terms.begin(), terms.end(), block.term);
+    if (is_its && (samples.empty() || samples.back() != block.sample)) {
+      samples.push_back(block.sample);
+    }
   }
-  if (samples.empty()) return Eigen::VectorXd::Zero(fitted_.fit.residual.size());
-  std::vector<std::pair<int, Observation>> recorded;
-  const auto restore = [&] {
-    for (const auto& [sample, seen] : recorded) moved_->set_measurements(sample, seen);
-  };
-  try {
+  const auto read = [&](const std::function<void(Observation&)>& change) {
     for (const int s : samples) {
       const Sample& sample = fitted_.samples[static_cast<std::size_t>(s)];
       const std::optional<Sample> paired = problem.paired(sample);
       Observation seen = *(paired ? *paired : sample).observation(sensor);
-      recorded.emplace_back(s, seen);
-      move(seen);
+      change(seen);
       moved_->set_measurements(s, seen);
     }
-  } catch (const SampleError&) {
-    restore();
-    return Eigen::VectorXd::Zero(fitted_.fit.residual.size());
-  }
+  };
+  const auto as_recorded = [](Observation&) {};
+  Eigen::VectorXd slopes = Eigen::VectorXd::Zero(fitted_.fit.residual.size());
+  if (samples.empty()) return slopes;
   if (!problem.sample_poses().empty()) terms.clear();  // they are fitted to all of a sample
-  Eigen::VectorXd slopes = slopes_of(fitted_, *moved_, terms, step);
-  restore();
+  try {
+    read(move);
+    slopes = slopes_of(fitted_, *moved_, terms, step);
+  } catch (const SampleError&) {
+  }
+  read(as_recorded);
   return slopes;
 }
 
