@@ -79,7 +79,7 @@ KINECAL_INLINE LinearFit linear_rows(AnyEvaluator& evaluator, ParameterValues va
     if (from.used.size() > 0) fit.used.segment(first, block.size) = from.used;
     if (derivatives) {
       const Eigen::VectorXd weights = term.weight * from.factor;
-      const std::vector<int> columns = detail::columns_of(from.jacobian);
+      const std::vector<int> columns = detail::nonzero_columns(from.jacobian);
       const Eigen::MatrixXd weighted = weights.asDiagonal() * from.jacobian(Eigen::all, columns);
       const Eigen::MatrixXd by = basis(columns, Eigen::all);
       fit.jacobian.middleRows(first, block.size).noalias() = weighted * by;

@@ -20,7 +20,7 @@ namespace kinecal::detail {
 inline constexpr double kUnobservable = 1e-6;
 
 /// The columns of some rows that are not zero: an error block knows the parameters of its own sensors only.
-[[nodiscard]] std::vector<int> columns_of(const Eigen::MatrixXd& rows);
+[[nodiscard]] std::vector<int> nonzero_columns(const Eigen::MatrixXd& rows);
 
 /// J^T J of the error-free problem, weighted, without priors.
 [[nodiscard]] Eigen::MatrixXd error_free_information(const AnyProblem& problem, const FreeSet& free,

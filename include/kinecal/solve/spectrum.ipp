@@ -11,7 +11,7 @@
 
 namespace kinecal::detail {
 
-KINECAL_INLINE std::vector<int> columns_of(const Eigen::MatrixXd& rows) {
+KINECAL_INLINE std::vector<int> nonzero_columns(const Eigen::MatrixXd& rows) {
   std::vector<int> columns;
   for (int c = 0; c < rows.cols(); ++c) {
     if (!rows.col(c).isZero(0.0)) columns.push_back(c);
@@ -24,7 +24,7 @@ KINECAL_INLINE Eigen::MatrixXd error_free_information(const AnyProblem& problem,
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(free.size(), free.size());
   const auto add = [&](int t, int, const TermResiduals& out) {
     const Eigen::VectorXd weights = problem.term(t).weight * out.factor;
-    const std::vector<int> columns = columns_of(out.jacobian);
+    const std::vector<int> columns = nonzero_columns(out.jacobian);
     const Eigen::MatrixXd weighted = weights.asDiagonal() * out.jacobian(Eigen::all, columns);
     const Eigen::MatrixXd squared = weighted.transpose() * weighted;
     sum(columns, columns) += squared;

@@ -113,7 +113,7 @@ void ParameterSearch::set_parts(const LinearFit& fit, const SearchPoses& poses) 
   }
   for (const RowBlock& block : fit.blocks) {
     const Eigen::MatrixXd all = jacobian_.middleRows(block.first, block.size);
-    const std::vector<int> columns = detail::columns_of(all);
+    const std::vector<int> columns = detail::nonzero_columns(all);
     const Eigen::MatrixXd rows = all(Eigen::all, columns);
     const Eigen::MatrixXd squared = rows.transpose() * rows;
     const Eigen::VectorXd gradient = rows.transpose() * residual_.segment(block.first, block.size);
