@@ -258,9 +258,10 @@ void set_up(const StudyFiles& files, StudyInput& input) {
   if (setup.free.empty()) throw InputError(files.config + ": no free parameter affects a residual");
   setup.samples = input.samples;
   const auto frames = compared_frames(*step.problem, input.samples);
-  if (!frames) throw InputError(files.config + ": nothing is compared whose pose could be judged");
-  setup.frame = frames->first;
-  setup.in = frames->second;
+  if (frames.empty())
+    throw InputError(files.config + ": nothing is compared whose pose could be judged");
+  setup.frame = frames.front().frame;
+  setup.in = frames.front().in;
   setup.noise = input.plan.noise;
   setup.errors = input.plan.errors;
   setup.ruined = input.plan.setup.faults.outliers;
