@@ -226,7 +226,18 @@ void add_block(AnyProblem& problem, const BlockConfig& block, bool exclusive,
 
 // The free parameters of a step that some residual depends on; the others are reported, by their cause.
 
-/// Warns of sensors that are in no sample, with what follows from that.
+/// True if a frame of the step keeps its pose.
+/// @param held  free parameters that keep their initial values
+[[nodiscard]] bool holds_frame(const StepConfig& step, const std::vector<std::string>& held) {
+  return std::any_of(held.begin(), held.end(), [&](const std::string& parameter) {
+    return std::any_of(step.free_frames.begin(), step.free_frames.end(), [&](const auto& frame) {
+      return is_frame_parameter(parameter, frame.name);
+    });
+  });
+}
+
+/// Warns of sensors that are in no sample, with what follows from that.  If a pose that was to be found stays what it was,
+/// it is a doubt: the result does not have it.
 /// @param held  free parameters that keep their initial values
 void report_missing(const MissingSensors& missing, const StepConfig& step,
                     const std::vector<std::string>& held, Diagnostics& diagnostics) {
@@ -241,7 +252,10 @@ void report_missing(const MissingSensors& missing, const StepConfig& step,
     text += fmt::format(", and {} {}", quoted_list(held, 3, "parameter"),
                         held.size() == 1 ? "keeps its initial value" : "keep their initial values");
   }
-  diagnostics.warning(missing.models.front()->place, text);
+  const SourceLocation& place = missing.models.front()->place;
+  const bool is_surface = missing.models.front()->is_surface;  // the camera that sees it is not associated
+  const bool is_doubt = !is_surface && holds_frame(step, held);
+  is_doubt ? diagnostics.doubt(place, text) : diagnostics.warning(place, text);
 }
 
 /// Warns of parameters of one line of the file that have no residual.

@@ -57,6 +57,10 @@ void complete_names(const std::vector<std::string>& images, std::vector<CsvRow>&
                                    std::to_string(rows.size()) + " rows, " + folder.images +
                                    " has " + std::to_string(names.size()) + " images");
     } else if (!std::binary_search(names.begin(), names.end(), file, file_naturally_before)) {
+      const auto has_it = [&](const std::string& other) {
+        return std::filesystem::exists(std::filesystem::path(other) / file);
+      };
+      if (std::any_of(folder.others.begin(), folder.others.end(), has_it)) continue;
       diagnostics.error(place, "image '" + printable(name) + "' is not in " + folder.images +
                                    did_you_mean(file, names));
     } else if (!used.insert(file).second) {
@@ -211,8 +215,9 @@ View read_view(const PosedImage& image, const std::optional<CameraInfo>& camera,
   view.camera = camera;
   view.image = read_image(image.path);
   view.joints = image.joints;
-  if (!camera && image.joints.names.empty() && image.joints.poses.empty()) {
-    view.camera.emplace();  // of a camera alone: its size is all that is known
+  const bool is_alone = image.joints.names.empty() && image.joints.poses.empty();
+  if (!camera && is_alone) view.camera.emplace();
+  if (view.camera && view.camera->width == 0) {  // its size is all that is known
     view.camera->width = view.image.width;
     view.camera->height = view.image.height;
   }
