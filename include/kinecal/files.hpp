@@ -67,6 +67,7 @@
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/files/text_file.hpp"
+#include "kinecal/files/urdf/joined_urdf.hpp"
 #include "kinecal/files/urdf/patch_urdf.hpp"
 #include "kinecal/files/urdf/patch_xacro.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"

@@ -458,6 +458,24 @@ void drop_models_without_use(Config& config, const Robot& robot, Diagnostics& di
   return config;
 }
 
+/// What joints should be called, if a robot has one of several arms' prefixes before the names that a sample has; else
+/// empty.
+[[nodiscard]] std::string prefix_text(const Robot& robot, const Sample& sample) {
+  for (const std::string& name : sample.joint_names) {
+    if (robot.has_joint(name)) return "";
+  }
+  for (const std::string& name : sample.joint_names) {
+    std::vector<std::string> meant;
+    for (const std::string& joint : robot.joint_names()) {
+      if (joint.ends_with("_" + name)) meant.push_back("'" + joint + "'");
+    }
+    if (meant.empty()) continue;
+    return fmt::format("; the samples have '{}': name joints as the URDF does, {}", name,
+                       fmt::join(meant, " or "));
+  }
+  return "";
+}
+
 /// Adds the samples.  Samples that are refused for one reason give one error.
 /// @returns  indices of those that were added
 std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> samples,
@@ -465,7 +483,7 @@ std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> sample
   constexpr std::size_t kReported = 5;  // the first few show what is wrong
   std::size_t others = 0;
   struct Reason {
-    std::string text, first;  // without and with the place of a sample
+    std::string text, first, prefix;  // without and with the place of a sample; prefix_text()
     std::size_t count = 1;
   };
   std::vector<Reason> refused;
@@ -482,7 +500,7 @@ std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> sample
       if (known != refused.end()) {
         ++known->count;
       } else if (refused.size() < kReported) {
-        refused.push_back({reason, what});
+        refused.push_back({reason, what, prefix_text(problem.robot(), sample)});
       } else {
         ++others;
       }
@@ -493,7 +511,7 @@ std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> sample
     diagnostics.errors.push_back(
         reason.first +
         (reason.count > 1 ? " (and in " + counted(reason.count - 1, "more sample") + ")" : "") +
-        (lacks_camera ? "; record it, or give its file: --camera NAME=FILE" : ""));
+        (lacks_camera ? "; record it, or give its file: --camera NAME=FILE" : reason.prefix));
   }
   if (others > 0) {
     diagnostics.errors.push_back(

@@ -162,6 +162,7 @@ struct InitAnswers {
   Vector3<double> center =
       Vector3<double>::Zero();  ///< where a sphere or the end of a bar may be, in the base
   bool known_lens = false;      ///< the intrinsics of the camera are held
+  std::vector<std::string> stands = {};  ///< joints on which robots stand at a pose to be found
 };
 
 /// The sensor_name of what holds the target: the arm, or a board in the world.

@@ -179,6 +179,30 @@ std::vector<InitAnswers> all_answers_from_samples(const Robot& robot,
   return all;
 }
 
+void relate_stands(const Robot& robot, const std::vector<std::string>& stands,
+                   std::vector<InitAnswers>& all) {
+  if (stands.size() < 2) return;
+  std::map<std::string, std::string> groups = {{"", ""}};  // of stands; "" is the world
+  for (const std::string& stand : stands) groups[stand] = stand;
+  for (InitAnswers& answers : all) {
+    const auto group = [&](const std::string& link) {
+      return groups.at(joint_above(robot, link.empty() ? answers.base : link, stands));
+    };
+    const std::string from = group(answers.arm), to = group(answers.camera);
+    for (auto& [stand, of] : groups) {
+      if (of == from) of = to;
+    }
+    answers.stands.assign(stands.begin() + 1, stands.end());
+  }
+  for (const std::string& stand : stands) {
+    if (groups.at(stand) == groups.at(stands.front())) continue;
+    throw InputError(fmt::format(
+        "--urdf: nothing says where the robot on '{}' stands: no --camera and --arm, or board in "
+        "the world, relates it to the others; let a camera of one robot see the arm of the other",
+        stand));
+  }
+}
+
 std::string pairs_text(const std::vector<InitAnswers>& all) {
   std::string text;
   for (const InitAnswers& answers : all) {

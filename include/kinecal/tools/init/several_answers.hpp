@@ -29,6 +29,12 @@ namespace kinecal {
                                                                 std::span<const Sample> samples,
                                                                 const InitAnswers& given);
 
+/// Lets the answers find where robots stand: all but the first, which stands where the URDF has it.
+/// @param stands  their joints, as stand_joint() names them
+/// @throws InputError  if no answer relates a robot to the first, by others or itself
+void relate_stands(const Robot& robot, const std::vector<std::string>& stands,
+                   std::vector<InitAnswers>& all);
+
 /// "left_eye sees right_hand; right_eye sees left_hand"; without a camera, the arms.
 [[nodiscard]] std::string pairs_text(const std::vector<InitAnswers>& all);
 
