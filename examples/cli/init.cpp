@@ -432,9 +432,8 @@ std::string call_of(const InitOptions& options) {
   for (const std::string& urdf : options.urdfs) call.add_option("--urdf", {urdf});
   for (const std::string& stand : options.stands) call.add_option("--stands", {stand});
   for (const auto& [option, value] :
-       {std::pair("--target", targets),
-        std::pair("--arm", options.arm), std::pair("--camera", options.camera),
-        std::pair("--camera-type", options.camera_type),
+       {std::pair("--target", targets), std::pair("--arm", options.arm),
+        std::pair("--camera", options.camera), std::pair("--camera-type", options.camera_type),
         std::pair("--robot-camera-name", options.camera_name),
         std::pair("--target-frame", options.target_frame),
         std::pair("--tracker-frame", options.tracker_frame),
@@ -541,9 +540,9 @@ void set_stand(const std::string& option, std::vector<RobotPart>& robots) {
   if (robot == robots.end()) {
     std::vector<std::string> names;
     for (const RobotPart& one : robots) names.push_back(one.name);
-    throw InputError(fmt::format("--stands: no robot '{}'{}; --urdf names {}", name,
-                                 did_you_mean(name, names),
-                                 names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+    throw InputError(
+        fmt::format("--stands: no robot '{}'{}; --urdf names {}", name, did_you_mean(name, names),
+                    names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
   }
   std::vector<double> numbers;
   for (const std::string& word : split(option.substr(std::min(equals + 1, option.size())))) {
@@ -618,8 +617,7 @@ int init(const InitOptions& given) {
   if (!options.capture.empty()) {
     check_output(options.capture, {options.urdf, options.output}, options.force);
   }
-  const std::string urdf_text =
-      robots.empty() ? read_urdf_text(options.urdf) : joined_urdf(robots);
+  const std::string urdf_text = robots.empty() ? read_urdf_text(options.urdf) : joined_urdf(robots);
   const Robot robot = parse_urdf(urdf_text, options.urdf);
   const Configured made = configure(robot, stands_of(urdf_text, options.urdf), options);
   check();  // the file may have appeared meanwhile

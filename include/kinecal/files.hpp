@@ -55,6 +55,7 @@
 #include "kinecal/files/recordings/read_recording.hpp"
 #include "kinecal/files/recordings/recorded_clouds.hpp"
 #include "kinecal/files/recordings/write_recording.hpp"
+#include "kinecal/files/results/arm_files.hpp"
 #include "kinecal/files/results/depth_file.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/results/homing_offsets.hpp"

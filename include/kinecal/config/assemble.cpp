@@ -253,7 +253,8 @@ void report_missing(const MissingSensors& missing, const StepConfig& step,
                         held.size() == 1 ? "keeps its initial value" : "keep their initial values");
   }
   const SourceLocation& place = missing.models.front()->place;
-  const bool is_surface = missing.models.front()->is_surface;  // the camera that sees it is not associated
+  const bool is_surface =
+      missing.models.front()->is_surface;  // the camera that sees it is not associated
   const bool is_doubt = !is_surface && holds_frame(step, held);
   is_doubt ? diagnostics.doubt(place, text) : diagnostics.warning(place, text);
 }

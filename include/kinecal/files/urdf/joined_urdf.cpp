@@ -103,11 +103,12 @@ void check_names(std::span<const RobotPart> parts) {
     for (std::size_t j = 0; j < parts.size(); ++j) {
       const std::string& other = parts[j].name;
       if (i == j || !(other + "_").starts_with(name + "_")) continue;
-      throw InputError(name == other
-                           ? fmt::format("two robots are called '{}'; each has a name of its own", name)
-                           : fmt::format("the names of robot '{}' would begin like those of '{}'; "
-                                         "choose another name",
-                                         other, name));
+      throw InputError(
+          name == other
+              ? fmt::format("two robots are called '{}'; each has a name of its own", name)
+              : fmt::format("the names of robot '{}' would begin like those of '{}'; "
+                            "choose another name",
+                            other, name));
     }
   }
 }
@@ -135,13 +136,13 @@ void check_names(std::span<const RobotPart> parts) {
   std::string text = fmt::format(
       "  <joint name=\"{}\" type=\"fixed\">\n    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n"
       "    <origin xyz=\"{}\" rpy=\"{}\"/>\n  </joint>\n",
-      stand_joint(part.name), kWorldLink,
-      xml_attribute_text(part.name + "_" + root, '"'), numbers(xyz), numbers(rpy));
+      stand_joint(part.name), kWorldLink, xml_attribute_text(part.name + "_" + root, '"'),
+      numbers(xyz), numbers(rpy));
   if (robot.name().find("--") == std::string::npos) {
     text += fmt::format("  <!-- Robot {}. -->", robot.name());
   }
-  const std::string inside = inside_of_robot(apply_edits(part.text, std::move(edits)),
-                                             source.offset(source.robot()));
+  const std::string inside =
+      inside_of_robot(apply_edits(part.text, std::move(edits)), source.offset(source.robot()));
   return text + inside + (inside.ends_with('\n') ? "" : "\n");
 }
 
@@ -208,8 +209,9 @@ std::string joined_urdf(std::span<const RobotPart> parts) {
     names += (names.empty() ? "" : "_") + part.name;
     robots += detail::standing_robot(part);
   }
-  return fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n  <link name=\"{}\"/>\n{}</robot>\n",
-                     names, kWorldLink, robots);
+  return fmt::format(
+      "<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n  <link name=\"{}\"/>\n{}</robot>\n", names,
+      kWorldLink, robots);
 }
 
 std::vector<std::string> joined_robots(const std::string& text, const std::string& file) {
@@ -223,8 +225,8 @@ std::string separated_urdf(const std::string& text, const std::string& file,
                            const std::string& name) {
   const detail::UrdfText source(text, file);
   const std::vector<detail::JoinedRobot> robots = detail::robots_in(source);
-  const auto robot = std::find_if(robots.begin(), robots.end(),
-                                  [&](const auto& one) { return one.name == name; });
+  const auto robot =
+      std::find_if(robots.begin(), robots.end(), [&](const auto& one) { return one.name == name; });
   if (robot == robots.end()) throw InputError(file + ": has no robot '" + name + "' of several");
   const std::string prefix = name + "_";
   std::vector<detail::TextEdit> edits;
@@ -234,8 +236,8 @@ std::string separated_urdf(const std::string& text, const std::string& file,
       edits.push_back({begin - robot->begin, prefix.size(), ""});
     }
   });
-  std::string inside = detail::apply_edits(text.substr(robot->begin, robot->end - robot->begin),
-                                           std::move(edits));
+  std::string inside =
+      detail::apply_edits(text.substr(robot->begin, robot->end - robot->begin), std::move(edits));
   const std::string own = detail::taken_name(inside).value_or(name);
   const std::size_t last = inside.find_last_not_of(detail::kXmlSpace);
   inside.erase(last == std::string::npos ? 0 : last + 1);

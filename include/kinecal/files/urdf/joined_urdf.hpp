@@ -25,10 +25,11 @@ namespace kinecal {
 
 /// One of several robots.
 struct RobotPart {
-  std::string name;                ///< letters, digits, _ and -, a letter first
-  std::string text;                ///< of its URDF
-  std::string file;                ///< its name, for messages
-  std::string folder = {};         ///< of relative names of meshes, as seen from the joined URDF; empty: its own
+  std::string name;  ///< letters, digits, _ and -, a letter first
+  std::string text;  ///< of its URDF
+  std::string file;  ///< its name, for messages
+  std::string folder =
+      {};  ///< of relative names of meshes, as seen from the joined URDF; empty: its own
   Pose<double> world_T_root = {};  ///< where it stands, metres
 };
 

@@ -92,11 +92,11 @@ constexpr double kFits = 1.5, kBad = 3.0;  // times what noise explains
 
 [[nodiscard]] std::string cameras_description(
     const std::vector<std::pair<std::string, Sights>>& all, std::size_t samples) {
-  std::string text = fmt::format("What {} cameras saw of {}:", all.size(),
-                                 counted(samples, "sample"));
+  std::string text =
+      fmt::format("What {} cameras saw of {}:", all.size(), counted(samples, "sample"));
   for (const auto& [camera, sights] : all) {
-    text += fmt::format("{} {} {}", &camera == &all.front().first ? "" : ",",
-                        shortened(camera, 40), sights.size());
+    text += fmt::format("{} {} {}", &camera == &all.front().first ? "" : ",", shortened(camera, 40),
+                        sights.size());
   }
   return text + ".";
 }

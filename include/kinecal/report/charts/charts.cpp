@@ -31,10 +31,10 @@ std::vector<Chart> charts(const ReportData& data) {
   using Draw = std::vector<Chart> (*)(const ReportData&);
   const Draw of_parameters = [](const ReportData& of) { return parameter_charts(of); };
   for (const Draw draw : std::initializer_list<Draw>{
-           error_charts, held_out_charts, search_charts, sample_charts, camera_charts, feature_charts,
-           pixel_charts, outline_charts, radial_charts, projection_charts, depth_charts,
-           plane_charts, workspace_charts, of_parameters, correlation_charts, unobservable_charts,
-           convergence_charts, start_charts}) {
+           error_charts, held_out_charts, search_charts, sample_charts, camera_charts,
+           feature_charts, pixel_charts, outline_charts, radial_charts, projection_charts,
+           depth_charts, plane_charts, workspace_charts, of_parameters, correlation_charts,
+           unobservable_charts, convergence_charts, start_charts}) {
     std::vector<Chart> some = draw(data);
     std::move(some.begin(), some.end(), std::back_inserter(all));
   }
