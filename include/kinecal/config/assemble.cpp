@@ -18,6 +18,7 @@
 
 #include "kinecal/config/config.hpp"
 #include "kinecal/config/config_free.ipp"
+#include "kinecal/config/expected_joints.hpp"
 #include "kinecal/config/few_samples.ipp"
 #include "kinecal/config/frame_gaps.hpp"
 #include "kinecal/config/loss_names.hpp"
@@ -459,24 +460,6 @@ void drop_models_without_use(Config& config, const Robot& robot, Diagnostics& di
   return config;
 }
 
-/// What joints should be called, if a robot has one of several arms' prefixes before the names that a sample has; else
-/// empty.
-[[nodiscard]] std::string prefix_text(const Robot& robot, const Sample& sample) {
-  for (const std::string& name : sample.joint_names) {
-    if (robot.has_joint(name)) return "";
-  }
-  for (const std::string& name : sample.joint_names) {
-    std::vector<std::string> meant;
-    for (const std::string& joint : robot.joint_names()) {
-      if (joint.ends_with("_" + name)) meant.push_back("'" + joint + "'");
-    }
-    if (meant.empty()) continue;
-    return fmt::format("; the samples have '{}': name joints as the URDF does, {}", name,
-                       fmt::join(meant, " or "));
-  }
-  return "";
-}
-
 /// Adds the samples.  Samples that are refused for one reason give one error.
 /// @returns  indices of those that were added
 std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> samples,
@@ -484,7 +467,7 @@ std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> sample
   constexpr std::size_t kReported = 5;  // the first few show what is wrong
   std::size_t others = 0;
   struct Reason {
-    std::string text, first, prefix;  // without and with the place of a sample; prefix_text()
+    std::string text, first, expected;  // without and with the place of a sample; expected_joints()
     std::size_t count = 1;
   };
   std::vector<Reason> refused;
@@ -501,7 +484,7 @@ std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> sample
       if (known != refused.end()) {
         ++known->count;
       } else if (refused.size() < kReported) {
-        refused.push_back({reason, what, prefix_text(problem.robot(), sample)});
+        refused.push_back({reason, what, expected_joints(problem.robot(), sample.joint_names)});
       } else {
         ++others;
       }
@@ -512,7 +495,7 @@ std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> sample
     diagnostics.errors.push_back(
         reason.first +
         (reason.count > 1 ? " (and in " + counted(reason.count - 1, "more sample") + ")" : "") +
-        (lacks_camera ? "; record it, or give its file: --camera NAME=FILE" : reason.prefix));
+        (lacks_camera ? "; record it, or give its file: --camera NAME=FILE" : reason.expected));
   }
   if (others > 0) {
     diagnostics.errors.push_back(
