@@ -21,7 +21,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-const char* const kArm = R"(<?xml version='1.0'?>
+const char* const kArmUrdf = R"(<?xml version='1.0'?>
 <robot name="arm">
   <!-- as its maker wrote it -->
   <material name="grey"><color rgba="1 1 1 1"/></material>
@@ -46,18 +46,18 @@ const char* const kArm = R"(<?xml version='1.0'?>
 </robot>
 )";
 
-std::vector<RobotPart> two() {
-  return {{"left", kArm, "left.urdf", "", {}},
+std::vector<RobotPart> two_robots() {
+  return {{"left", kArmUrdf, "left.urdf", "", {}},
           {"right",
-           kArm,
+           kArmUrdf,
            "right.urdf",
            "../of_right",
            {rotation_from_rpy({0.0, 0.0, 0.5}), {0.0, -1.0, 0.2}}}};
 }
 
 TEST(JoinedUrdf, HasEachRobotUnderItsNameWhereItStands) {
-  const Robot robot = parse_urdf(joined_urdf(two()), "robots.urdf");
-  const Robot alone = parse_urdf(kArm, "arm.urdf");
+  const Robot robot = parse_urdf(joined_urdf(two_robots()), "robots.urdf");
+  const Robot alone = parse_urdf(kArmUrdf, "arm.urdf");
   EXPECT_EQ(robot.name(), "left_right");
   EXPECT_THAT(robot.joint_names(),
               testing::UnorderedElementsAre("world_left", "left_elbow", "left_grip", "world_right",
@@ -65,7 +65,7 @@ TEST(JoinedUrdf, HasEachRobotUnderItsNameWhereItStands) {
   EXPECT_EQ(robot.joint("right_grip").mimic->joint, "right_elbow");
   const auto at = [](const std::string&) { return 0.4; };
   const Pose<double> base_T_finger = forward_kinematics(make_chain(alone, "base", "finger"), at);
-  const Pose<double> stand = two()[1].world_T_root;
+  const Pose<double> stand = two_robots()[1].world_T_root;
   const Pose<double> found = forward_kinematics(make_chain(robot, "world", "right_finger"), at);
   constexpr double kSame = 1e-12;
   EXPECT_LE((found.translation - (stand * base_T_finger).translation).norm(), kSame);
@@ -73,7 +73,7 @@ TEST(JoinedUrdf, HasEachRobotUnderItsNameWhereItStands) {
 }
 
 TEST(JoinedUrdf, RenamesWhatOtherProgramsReadButNotInsideGazebo) {
-  const std::string text = joined_urdf(two());
+  const std::string text = joined_urdf(two_robots());
   for (const char* part :
        {"<transmission name=\"left_t\"><joint name=\"left_elbow\"/><actuator name=\"left_m\"/>",
         "<ros2_control name=\"right_arm\"", "<param name=\"mimic\">right_elbow</param>",
@@ -85,11 +85,11 @@ TEST(JoinedUrdf, RenamesWhatOtherProgramsReadButNotInsideGazebo) {
 }
 
 TEST(JoinedUrdf, SeparatesEachRobotByteForByte) {
-  std::vector<RobotPart> parts = two();
+  std::vector<RobotPart> parts = two_robots();
   parts[1].folder.clear();
   const std::string text = joined_urdf(parts);
   EXPECT_THAT(joined_robots(text, "robots.urdf"), ElementsAre("left", "right"));
-  const std::string arm(kArm);
+  const std::string arm(kArmUrdf);
   const std::string inside = arm.substr(arm.find("<robot"));
   for (const char* name : {"left", "right"}) {
     const std::string alone = separated_urdf(text, "robots.urdf", name);
@@ -101,7 +101,7 @@ TEST(JoinedUrdf, SeparatesEachRobotByteForByte) {
 }
 
 TEST(JoinedUrdf, SeparatesWhatWasCalibrated) {
-  const std::string text = joined_urdf(two());
+  const std::string text = joined_urdf(two_robots());
   const Robot robot = parse_urdf(text, "robots.urdf");
   const std::string patched =
       patch_urdf(text, "robots.urdf", robot, {{"right_elbow", 0.02, {}}}, OffsetStyle::rising);
@@ -111,8 +111,8 @@ TEST(JoinedUrdf, SeparatesWhatWasCalibrated) {
 }
 
 TEST(JoinedUrdf, AnyOtherUrdfWasNotJoined) {
-  EXPECT_THAT(joined_robots(kArm, "arm.urdf"), IsEmpty());
-  std::string torso = joined_urdf(two());
+  EXPECT_THAT(joined_robots(kArmUrdf, "arm.urdf"), IsEmpty());
+  std::string torso = joined_urdf(two_robots());
   for (std::size_t at; (at = torso.find("\"world\"")) != std::string::npos;) {
     torso.replace(at, 7, "\"torso\"");
   }
@@ -121,7 +121,7 @@ TEST(JoinedUrdf, AnyOtherUrdfWasNotJoined) {
 
 TEST(JoinedUrdf, NamesARobotThatCannotBe) {
   const auto refusal = [](const std::string& left, const std::string& right) {
-    std::vector<RobotPart> parts = two();
+    std::vector<RobotPart> parts = two_robots();
     parts[0].name = left;
     parts[1].name = right;
     return test::thrown<InputError>([&] { (void)joined_urdf(parts); }, "");
@@ -130,7 +130,7 @@ TEST(JoinedUrdf, NamesARobotThatCannotBe) {
   EXPECT_THAT(refusal("arm", "arm_2"), HasSubstr("robot 'arm_2' would begin like those of 'arm'"));
   EXPECT_THAT(refusal("world", "b"), HasSubstr("'world' cannot be the name of a robot"));
   EXPECT_THAT(refusal("a b", "b"), HasSubstr("'a b' cannot be the name of a robot"));
-  std::vector<RobotPart> parts = two();
+  std::vector<RobotPart> parts = two_robots();
   parts[1].text = "<robot name='x'><link name='a'/><joint";
   EXPECT_THAT(test::thrown<InputError>([&] { (void)joined_urdf(parts); }, ""),
               HasSubstr("right.urdf"));

@@ -88,7 +88,7 @@ void for_each_relative_file(const UrdfText& source, pugi::xml_node parent, const
 }
 
 /// @throws InputError  as joined_urdf()
-void check_names(std::span<const RobotPart> parts) {
+void check_robot_names(std::span<const RobotPart> parts) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const std::string& name = parts[i].name;
     const bool is_plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
@@ -203,7 +203,7 @@ std::string stand_joint(const std::string& robot) {
 }
 
 std::string joined_urdf(std::span<const RobotPart> parts) {
-  detail::check_names(parts);
+  detail::check_robot_names(parts);
   std::string names, robots;
   for (const RobotPart& part : parts) {
     names += (names.empty() ? "" : "_") + part.name;

@@ -72,13 +72,13 @@ using Sights = std::map<int, Sight>;
   return columns;
 }
 
-constexpr double kFits = 1.5, kBad = 3.0;  // times what noise explains
+constexpr double kExplained = 1.5, kFarOff = 3.0;  // times what noise explains
 
-[[nodiscard]] const char* class_of(const Sight& sight) {
+[[nodiscard]] const char* class_of_sight(const Sight& sight) {
   const double times = sight.times();
   return !std::isfinite(times) ? "faint l2"
-         : times <= kFits      ? "after l2"
-         : times <= kBad       ? "after"
+         : times <= kExplained ? "after l2"
+         : times <= kFarOff    ? "after"
                                : "bad";
 }
 
@@ -136,7 +136,7 @@ std::vector<Chart> camera_charts(const ReportData& data) {
       if (seen == sights.end()) continue;
       const ReportedSample& sample = data.samples[static_cast<std::size_t>(columns[column])];
       drawing.rectangle({kNames + wide * static_cast<double>(column), y}, wide - gap, kRow - 3.0,
-                        detail::class_of(seen->second),
+                        detail::class_of_sight(seen->second),
                         detail::sight_text(camera, sample, seen->second), sample.number);
     }
   }
