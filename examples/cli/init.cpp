@@ -19,7 +19,6 @@
 #include "kinecal/files/urdf/joined_urdf.hpp"
 #include "kinecal/files/urdf/patch_urdf.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
-#include "kinecal/geometry/rpy.hpp"
 #include "kinecal/text/name_list.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/tools/init/answers_from_samples.hpp"
@@ -555,8 +554,8 @@ void set_stand(const std::string& option, std::vector<RobotPart>& robots) {
         "--stands: '{}' is not NAME=X,Y,Z,ROLL,PITCH,YAW: six numbers, metres and radians",
         option));
   }
-  robot->world_T_root = {rotation_from_rpy({numbers[3], numbers[4], numbers[5]}),
-                         {numbers[0], numbers[1], numbers[2]}};
+  robot->xyz = {numbers[0], numbers[1], numbers[2]};
+  robot->rpy = {numbers[3], numbers[4], numbers[5]};
 }
 
 /// The robots of --urdf if there are several.
@@ -577,7 +576,7 @@ std::vector<RobotPart> several_robots(const InitOptions& options) {
     }
     const std::filesystem::path own =
         std::filesystem::path(folder_of(file)).lexically_proximate(folder);
-    robots.push_back({name, read_urdf_text(file), file, own == "." ? "" : own.string(), {}});
+    robots.push_back({name, read_urdf_text(file), file, own == "." ? "" : own.string()});
   }
   for (const std::string& stand : options.stands) set_stand(stand, robots);
   return robots;

@@ -41,8 +41,8 @@ TEST(ArmFiles, OfRobotsThatWereJoinedAreTheirUrdfs) {
   const std::string arm =
       "<robot name=\"arm\"><link name=\"base\"/><link name=\"hand\"/><joint name=\"elbow\" "
       "type=\"fixed\"><parent link=\"base\"/><child link=\"hand\"/></joint></robot>";
-  const std::string urdf = joined_urdf(
-      std::vector<RobotPart>{{"a", arm, "a.urdf", "", {}}, {"b", arm, "b.urdf", "", {}}});
+  const std::string urdf =
+      joined_urdf(std::vector<RobotPart>{{"a", arm, "a.urdf"}, {"b", arm, "b.urdf"}});
   const auto files = arm_files(parse_urdf(urdf, "robots.urdf"), {}, urdf, "2026_11_30_12_00_00");
   ASSERT_THAT(files, SizeIs(2));
   EXPECT_EQ(files[0].name, "calibrated_a_2026_11_30_12_00_00.urdf");

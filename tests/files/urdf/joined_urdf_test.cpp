@@ -47,12 +47,8 @@ const char* const kArmUrdf = R"(<?xml version='1.0'?>
 )";
 
 std::vector<RobotPart> two_robots() {
-  return {{"left", kArmUrdf, "left.urdf", "", {}},
-          {"right",
-           kArmUrdf,
-           "right.urdf",
-           "../of_right",
-           {rotation_from_rpy({0.0, 0.0, 0.5}), {0.0, -1.0, 0.2}}}};
+  return {{"left", kArmUrdf, "left.urdf"},
+          {"right", kArmUrdf, "right.urdf", "../of_right", {0.0, -1.0, 0.2}, {0.0, 0.0, 0.5}}};
 }
 
 TEST(JoinedUrdf, HasEachRobotUnderItsNameWhereItStands) {
@@ -65,7 +61,8 @@ TEST(JoinedUrdf, HasEachRobotUnderItsNameWhereItStands) {
   EXPECT_EQ(robot.joint("right_grip").mimic->joint, "right_elbow");
   const auto at = [](const std::string&) { return 0.4; };
   const Pose<double> base_T_finger = forward_kinematics(make_chain(alone, "base", "finger"), at);
-  const Pose<double> stand = two_robots()[1].world_T_root;
+  const RobotPart right = two_robots()[1];
+  const Pose<double> stand{rotation_from_rpy(right.rpy), right.xyz};
   const Pose<double> found = forward_kinematics(make_chain(robot, "world", "right_finger"), at);
   constexpr double kSame = 1e-12;
   EXPECT_LE((found.translation - (stand * base_T_finger).translation).norm(), kSame);

@@ -113,15 +113,15 @@ TEST(SeveralAnswersCoverage, OfTwoArmsThatSeeEachOthersBoards) {
 // ---- two robots, each with its URDF
 
 /// The arms of TwoArms as two robots with one URDF, the first where its torso is.
-std::string joined_arms(const Pose<double>& world_T_right = {}) {
+std::string joined_arms() {
   const std::string both = TwoArms::urdf();
   const std::size_t begin = both.find("<link name=\"left_0\"/>"),
                     end = both.find("<link name=\"right_0\"/>");
   std::string arm =
       "<robot name=\"arm\"><link name=\"torso\"/>" + both.substr(begin, end - begin) + "</robot>";
   for (std::size_t at; (at = arm.find("left_")) != std::string::npos;) arm.erase(at, 5);
-  return joined_urdf(std::vector<RobotPart>{{"left", arm, "left.urdf", "", {}},
-                                            {"right", arm, "right.urdf", "", world_T_right}});
+  return joined_urdf(
+      std::vector<RobotPart>{{"left", arm, "left.urdf"}, {"right", arm, "right.urdf"}});
 }
 
 const std::vector<std::string> kStands = {"world_left", "world_right"};
@@ -130,9 +130,9 @@ TEST(SeveralAnswers, FindWhereTheSecondRobotStands) {
   const Robot robot = parse_urdf(joined_arms(), "robots.urdf");
   std::vector<InitAnswers> all = both_arms(robot);
   relate_stands(robot, kStands, all);
+  const Config config = config_of_answers(robot, all);
   std::vector<std::string> names;
-  for (const auto& frame : config_of_answers(robot, all).steps.front().free_frames)
-    names.push_back(frame.name);
+  for (const auto& frame : config.steps.front().free_frames) names.push_back(frame.name);
   EXPECT_THAT(names, testing::UnorderedElementsAre("left_hand_checkerboard", "world_right",
                                                    "right_eye_joint", "right_hand_checkerboard",
                                                    "left_eye_joint"))

@@ -15,7 +15,6 @@
 
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/files/urdf/urdf_text.ipp"
-#include "kinecal/geometry/rpy.hpp"
 
 namespace kinecal {
 
@@ -128,8 +127,6 @@ void check_robot_names(std::span<const RobotPart> parts) {
       edits.push_back({begin, 0, xml_attribute_text(part.folder + "/", '"')});
     });
   }
-  const Vector3<double>& xyz = part.world_T_root.translation;
-  const Vector3<double> rpy = rpy_from_rotation(part.world_T_root.rotation);
   const auto numbers = [](const Vector3<double>& of) {
     return fmt::format("{} {} {}", xml_number(of.x()), xml_number(of.y()), xml_number(of.z()));
   };
@@ -137,7 +134,7 @@ void check_robot_names(std::span<const RobotPart> parts) {
       "  <joint name=\"{}\" type=\"fixed\">\n    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n"
       "    <origin xyz=\"{}\" rpy=\"{}\"/>\n  </joint>\n",
       stand_joint(part.name), kWorldLink, xml_attribute_text(part.name + "_" + root, '"'),
-      numbers(xyz), numbers(rpy));
+      numbers(part.xyz), numbers(part.rpy));
   if (robot.name().find("--") == std::string::npos) {
     text += fmt::format("  <!-- Robot {}. -->", robot.name());
   }

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/geometry/pose.hpp"
+#include "kinecal/geometry/rotation.hpp"
 
 namespace kinecal {
 
@@ -30,7 +30,9 @@ struct RobotPart {
   std::string file;  ///< its name, for messages
   std::string folder =
       {};  ///< of relative names of meshes, as seen from the joined URDF; empty: its own
-  Pose<double> world_T_root = {};  ///< where it stands, metres
+  Vector3<double> xyz = Vector3<double>::Zero();  ///< where it stands in the world, metres
+  Vector3<double> rpy =
+      Vector3<double>::Zero();  ///< and how it is turned: roll, pitch, yaw, radians
 };
 
 /// The link on which all stand.

@@ -62,7 +62,8 @@ void complete_names(const std::vector<std::string>& images, std::vector<CsvRow>&
       };
       if (std::any_of(folder.others.begin(), folder.others.end(), has_it)) continue;
       diagnostics.error(place, "image '" + printable(name) + "' is not in " + folder.images +
-                                   did_you_mean(file, names));
+                                   (folder.others.empty() ? did_you_mean(file, names)
+                                                          : ", nor in that of another camera"));
     } else if (!used.insert(file).second) {
       diagnostics.error(place, "image '" + printable(name) + "' has a row already");
     } else {

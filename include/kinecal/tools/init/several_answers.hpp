@@ -24,7 +24,7 @@ namespace kinecal {
 
 /// Answers from samples, as answers_from_samples(): for each camera with each sensor whose points it sees.
 /// @param given  of one camera: arm, camera and names that are not empty are kept; of several: only the base
-/// @throws InputError  as answers_from_samples(); also if two targets have one frame
+/// @throws InputError  as answers_from_samples(); also if two targets have one frame, or one of several arms is not in the URDF
 [[nodiscard]] std::vector<InitAnswers> all_answers_from_samples(const Robot& robot,
                                                                 std::span<const Sample> samples,
                                                                 const InitAnswers& given);
