@@ -38,6 +38,15 @@ void complete_names(const std::vector<std::string>& images, std::vector<CsvRow>&
   }
 }
 
+/// True if a folder has a file of that name, which may lack its ending.
+[[nodiscard]] bool has_image(const std::string& folder, const std::string& name) {
+  std::error_code failed;
+  for (const auto& file : std::filesystem::directory_iterator(folder, failed)) {
+    if (file.path().filename() == name || file.path().stem() == name) return true;
+  }
+  return false;
+}
+
 /// Assigns images to rows.
 /// @param image  column of their names; nullopt: the order of their names
 /// @return       by the source of each row
@@ -57,9 +66,7 @@ void complete_names(const std::vector<std::string>& images, std::vector<CsvRow>&
                                    std::to_string(rows.size()) + " rows, " + folder.images +
                                    " has " + std::to_string(names.size()) + " images");
     } else if (!std::binary_search(names.begin(), names.end(), file, file_naturally_before)) {
-      const auto has_it = [&](const std::string& other) {
-        return std::filesystem::exists(std::filesystem::path(other) / file);
-      };
+      const auto has_it = [&](const std::string& other) { return has_image(other, file); };
       if (std::any_of(folder.others.begin(), folder.others.end(), has_it)) continue;
       diagnostics.error(place, "image '" + printable(name) + "' is not in " + folder.images +
                                    (folder.others.empty() ? did_you_mean(file, names)
