@@ -95,7 +95,10 @@ int check(const InputOptions& options);
 int inspect(const std::vector<std::string>& samples);
 
 struct InitOptions {
-  std::string urdf, output = "calibrate.yaml";
+  std::vector<std::string> urdfs;   ///< a file, or NAME=FILE of each of several robots
+  std::vector<std::string> stands;  ///< NAME=X,Y,Z,ROLL,PITCH,YAW of some of them
+  std::string urdf = {};            ///< of the robot, or of all of them: written beside the output
+  std::string output = "calibrate.yaml";
   std::string capture;            ///< file; empty: capture.yaml beside the output
   std::vector<std::string> from;  ///< samples that give the answers; empty: ask
   std::string base, arm, camera, camera_type, camera_name;  ///< empty: ask, or propose

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/results/standard_output.hpp"
 #include "kinecal/files/text_file.hpp"
+#include "kinecal/files/urdf/joined_urdf.hpp"
 #include "kinecal/files/urdf/patch_urdf.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/name_list.hpp"
@@ -278,13 +280,18 @@ void warn_of_idle(const InitOptions& options, InitTarget target, std::string_vie
   warn(is_touched(target) && target != InitTarget::gravity, options.touched_link, "--touched-link");
 }
 
+/// A file beside the configuration.
+std::string beside_output(const InitOptions& options, const char* name) {
+  return (std::filesystem::path(options.output).parent_path() / name).string();
+}
+
 /// The columns.yaml of a table that samples come from; empty if they come from no table.
 std::string columns_file(const InitOptions& options) {
   if (options.from.size() != 1) return "";
   const std::string extension = std::filesystem::path(options.from.front()).extension().string();
   const bool is_table = extension == ".csv" || extension == ".tsv" || extension == ".txt";
   if (!is_table) return "";
-  return (std::filesystem::path(options.output).parent_path() / "columns.yaml").string();
+  return beside_output(options, "columns.yaml");
 }
 
 /// The target given as an option, without the floor; nullopt if none is.
@@ -421,10 +428,11 @@ std::string call_of(const InitOptions& options) {
   for (const std::string& target : options.targets) {
     targets += (targets.empty() ? "" : ",") + target;
   }
+  for (const std::string& urdf : options.urdfs) call.add_option("--urdf", {urdf});
+  for (const std::string& stand : options.stands) call.add_option("--stands", {stand});
   for (const auto& [option, value] :
-       {std::pair("--urdf", options.urdf), std::pair("--target", targets),
-        std::pair("--arm", options.arm), std::pair("--camera", options.camera),
-        std::pair("--camera-type", options.camera_type),
+       {std::pair("--target", targets), std::pair("--arm", options.arm),
+        std::pair("--camera", options.camera), std::pair("--camera-type", options.camera_type),
         std::pair("--robot-camera-name", options.camera_name),
         std::pair("--target-frame", options.target_frame),
         std::pair("--tracker-frame", options.tracker_frame),
@@ -441,11 +449,14 @@ struct Configured {
   std::vector<InitAnswers> answers;  ///< of each camera and arm
   std::string text;                  ///< of the configuration
 };
-Configured configure(const Robot& robot, InitOptions options) {
+/// @param stands  joints on which several robots stand
+Configured configure(const Robot& robot, const std::vector<std::string>& stands,
+                     InitOptions options) {
   const InitOptions given = options;
   try {
     Configured all{
         options.from.empty() ? answer(robot, options) : answer_from_samples(robot, options), ""};
+    relate_stands(robot, stands, all.answers);
     all.text = initial_config(robot, all.answers);
     return all;
   } catch (const InputError& error) {
@@ -457,8 +468,7 @@ Configured configure(const Robot& robot, InitOptions options) {
 
 /// The capture.yaml beside the configuration, unless it is given.
 std::string capture_file(const InitOptions& options) {
-  if (!options.capture.empty()) return options.capture;
-  return (std::filesystem::path(options.output).parent_path() / "capture.yaml").string();
+  return options.capture.empty() ? beside_output(options, "capture.yaml") : options.capture;
 }
 
 /// Whether a file is one that a session or somebody has written; not init.
@@ -512,28 +522,112 @@ std::string joint_zeros_text(const Robot& robot, const std::string& urdf_text,
                        "'calibrate --offsets origin' moves the joints' origins instead\n");
 }
 
+/// NAME=FILE of a robot; the name is empty of a file alone.
+std::pair<std::string, std::string> named_urdf(const std::string& option) {
+  const std::size_t equals = option.find('=');
+  if (equals == std::string::npos || std::filesystem::exists(option)) return {"", option};
+  return {option.substr(0, equals), option.substr(equals + 1)};
+}
+
+/// Where a robot stands, of NAME=X,Y,Z,ROLL,PITCH,YAW.
+/// @throws InputError  if it is not that, or there is no such robot
+void set_stand(const std::string& option, std::vector<RobotPart>& robots) {
+  const std::size_t equals = std::min(option.find('='), option.size());
+  const std::string name = option.substr(0, equals);
+  const auto robot = std::find_if(robots.begin(), robots.end(),
+                                  [&](const RobotPart& one) { return one.name == name; });
+  if (robot == robots.end()) {
+    std::vector<std::string> names;
+    for (const RobotPart& one : robots) names.push_back(one.name);
+    throw InputError(
+        fmt::format("--stands: no robot '{}'{}; --urdf names {}", name, did_you_mean(name, names),
+                    names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+  }
+  std::vector<double> numbers;
+  for (const std::string& word : split(option.substr(std::min(equals + 1, option.size())))) {
+    std::istringstream in(word);
+    double number = 0.0;
+    if (in >> number && in.eof() && std::isfinite(number)) numbers.push_back(number);
+  }
+  if (numbers.size() != 6) {
+    throw InputError(fmt::format(
+        "--stands: '{}' is not NAME=X,Y,Z,ROLL,PITCH,YAW: six numbers, metres and radians",
+        option));
+  }
+  robot->xyz = {numbers[0], numbers[1], numbers[2]};
+  robot->rpy = {numbers[3], numbers[4], numbers[5]};
+}
+
+/// The robots of --urdf if there are several.
+/// @throws InputError  if they have no names
+std::vector<RobotPart> several_robots(const InitOptions& options) {
+  std::vector<RobotPart> robots;
+  if (options.urdfs.size() == 1 && named_urdf(options.urdfs.front()).first.empty()) {
+    if (!options.stands.empty()) set_stand(options.stands.front(), robots);
+    return robots;
+  }
+  const std::filesystem::path folder = folder_of(options.output);
+  for (const std::string& option : options.urdfs) {
+    const auto [name, file] = named_urdf(option);
+    if (name.empty() || options.urdfs.size() == 1) {
+      throw InputError(fmt::format(
+          "--urdf: '{}': several robots have a name each: --urdf left=FILE --urdf right=FILE",
+          option));
+    }
+    const std::filesystem::path own =
+        std::filesystem::path(folder_of(file)).lexically_proximate(folder);
+    robots.push_back({name, read_urdf_text(file), file, own == "." ? "" : own.string()});
+  }
+  for (const std::string& stand : options.stands) set_stand(stand, robots);
+  return robots;
+}
+
+/// The joints on which the robots of a URDF stand, if it was joined of several.
+std::vector<std::string> stands_of(const std::string& urdf_text, const std::string& urdf) {
+  std::vector<std::string> stands;
+  for (const std::string& robot : joined_robots(urdf_text, urdf))
+    stands.push_back(stand_joint(robot));
+  return stands;
+}
+
 }  // namespace
 
-int init(const InitOptions& options) {
-  if (!options.poses.empty()) return init_hand_eye(options);
-  if (!options.cameras.empty()) return init_cameras(options);
-  if (!options.corners.empty()) throw InputError("--corners goes with --poses or --cameras");
-  if (options.urdf.empty()) {
+int init(const InitOptions& given) {
+  if (!given.poses.empty()) return init_hand_eye(given);
+  if (!given.cameras.empty()) return init_cameras(given);
+  if (!given.corners.empty()) throw InputError("--corners goes with --poses or --cameras");
+  if (given.urdfs.empty()) {
     throw InputError(
         "give the robot: --urdf; or the poses of its flange: --poses; or the names of cameras "
         "alone: "
         "--cameras");
   }
-  const auto check = [&] { check_output(options.output, {options.urdf}, options.force); };
+  InitOptions options = given;
+  const std::vector<RobotPart> robots = several_robots(given);
+  options.urdf = robots.empty() ? given.urdfs.front() : beside_output(options, "robots.urdf");
+  std::vector<std::string> urdfs = {options.urdf};
+  for (const RobotPart& robot : robots) urdfs.push_back(robot.file);
+  const auto check = [&] {
+    check_output(options.output, urdfs, options.force);
+    if (robots.empty()) return;
+    check_output(options.urdf, {urdfs.begin() + 1, urdfs.end()}, options.force);
+  };
   check();  // before any question
   if (!options.capture.empty()) {
     check_output(options.capture, {options.urdf, options.output}, options.force);
   }
-  const std::string urdf_text = read_urdf_text(options.urdf);
+  const std::string urdf_text = robots.empty() ? read_urdf_text(options.urdf) : joined_urdf(robots);
   const Robot robot = parse_urdf(urdf_text, options.urdf);
-  const Configured made = configure(robot, options);
+  const Configured made = configure(robot, stands_of(urdf_text, options.urdf), options);
   check();  // the file may have appeared meanwhile
   const InitAnswers& answers = made.answers.front();
+  if (!robots.empty()) {
+    write_output(options.urdf, urdf_text);
+    const auto moving = std::find_if(robot.joints().begin(), robot.joints().end(),
+                                     [](const Joint& joint) { return moves(joint.type); });
+    say("wrote {}: the robots in link '{}'; joints are called as there, in samples, too{}\n",
+        options.urdf, kWorldLink, moving == robot.joints().end() ? "" : ": " + moving->name);
+  }
   write_output(options.output, made.text);
   if (made.text.find("sigma: ") != std::string::npos) {
     say("note: each sigma in {} is a guess of a residual, errors of the robot included; replace "

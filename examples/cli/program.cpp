@@ -334,7 +334,19 @@ void add_identify(CLI::App& command, IdentifyOptions& options) {
 
 void add_init(CLI::App& command, InitOptions& options) {
   CLI::Option* urdf =
-      command.add_option("--urdf", options.urdf, "the robot's URDF")->type_name("FILE");
+      command
+          .add_option("--urdf", options.urdfs,
+                      "the robot's URDF; of several robots each: --urdf left=FILE --urdf "
+                      "right=FILE, which are joined in robots.urdf")
+          ->allow_extra_args(false)
+          ->type_name("FILE");
+  command
+      .add_option("--stands", options.stands,
+                  "where one of several robots stands, roughly: right=X,Y,Z,ROLL,PITCH,YAW in "
+                  "metres and radians; by default it is found from nothing")
+      ->needs(urdf)
+      ->allow_extra_args(false)
+      ->type_name("NAME=POSE");
   CLI::Option* poses =
       command
           .add_option("--poses", options.poses,

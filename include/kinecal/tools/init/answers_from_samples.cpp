@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/config/expected_joints.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
@@ -41,10 +42,11 @@ void check_joints_of(const Robot& robot, const std::vector<Sample>& samples) {
       })) {
     return;
   }
+  const std::string expected = expected_joints(robot, {names.begin(), names.end()});
   throw InputError(
-      fmt::format("--from: none of the joints of the samples ({}, ...) is in the URDF of '{}'; "
-                  "give the URDF of their robot",
-                  *names.begin(), robot.name()));
+      fmt::format("--from: none of the joints of the samples ({}, ...) is in the URDF of '{}'{}",
+                  *names.begin(), robot.name(),
+                  expected.empty() ? "; give the URDF of their robot" : expected));
 }
 
 /// The link from which all joints are in the samples, if both ends hang on it: the joint of a rail or a torso that

@@ -160,8 +160,9 @@ struct InitAnswers {
   std::vector<Vector3<double>> layout =
       {};  ///< metres: places of sockets in one frame; empty: not known
   Vector3<double> center =
-      Vector3<double>::Zero();  ///< where a sphere or the end of a bar may be, in the base
-  bool known_lens = false;      ///< the intrinsics of the camera are held
+      Vector3<double>::Zero();           ///< where a sphere or the end of a bar may be, in the base
+  bool known_lens = false;               ///< the intrinsics of the camera are held
+  std::vector<std::string> stands = {};  ///< joints on which robots stand at a pose to be found
 };
 
 /// The sensor_name of what holds the target: the arm, or a board in the world.

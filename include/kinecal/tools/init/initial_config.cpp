@@ -73,6 +73,21 @@ void free_frame(InitPlan& plan, const std::string& name, const std::string& why,
   return make_chain(robot, base, tip).joints;
 }
 
+/// The stands of robots that the samples of a camera relate to what it sees: those on the way to one of them only.
+[[nodiscard]] std::vector<std::string> related_stands(const Robot& robot,
+                                                      const InitAnswers& answers) {
+  const auto stand_of = [&](const std::string& link) {
+    return joint_above(robot, link.empty() ? answers.base : link, answers.stands);
+  };
+  const std::string seen = stand_of(answers.arm), seen_by = stand_of(answers.camera);
+  std::vector<std::string> related;
+  if (seen == seen_by) return related;
+  for (const std::string& stand : {seen, seen_by}) {
+    if (!stand.empty()) related.push_back(stand);
+  }
+  return related;
+}
+
 /// Removes the common joints at the beginning of two chains.
 void remove_common(std::vector<ChainJoint>& a, std::vector<ChainJoint>& b) {
   while (!a.empty() && !b.empty() && a.front().name == b.front().name) {
@@ -268,13 +283,16 @@ void add_mounted_camera(InitPlan& plan, const InitAnswers& answers, const std::s
 /// @returns     whether the samples determine the frame of the mount
 bool free_arm_and_head(InitPlan& plan, const Robot& robot, const InitAnswers& answers,
                        const std::vector<ChainJoint>& head, const std::string& mount) {
-  const std::string head_frame = head.empty() ? mount : head.front().name;
+  const std::vector<std::string> stands = related_stands(robot, answers);
+  const std::string head_frame = head.empty()      ? mount
+                                 : !stands.empty() ? stands.front()
+                                                   : head.front().name;
   MeasuredTarget seen = seen_by_camera(answers, answers.arm);
   if (!is_board(answers.target)) seen.target_frame.clear();
   std::vector<std::string> frames = {head_frame};
   if (mount != head_frame) frames.push_back(mount);
   const bool determined = free_offsets(plan, robot, seen, frames);
-  if (!head.empty()) {
+  if (!head.empty() && stands.empty()) {
     free_frame(plan, head_frame, "How the part that carries the camera is mounted on the robot.");
   }
   return determined;
@@ -676,9 +694,10 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
 [[nodiscard]] InitPlan plan_initial_config(const Robot& robot, const InitAnswers& answers) {
   try {
     InitPlan plan;
-    if (answers.target == InitTarget::tracker) return plan_tracker(robot, answers);
     if (is_touched(answers.target)) return plan_touched(robot, answers);
-    if (answers.target == InitTarget::robot) {
+    if (answers.target == InitTarget::tracker) {
+      plan = plan_tracker(robot, answers);
+    } else if (answers.target == InitTarget::robot) {
       plan = plan_robot(robot, answers);
     } else if (answers.target == InitTarget::ground) {
       plan = plan_ground(robot, answers);
@@ -689,6 +708,10 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
     }
     if (answers.target == InitTarget::ground || answers.with_ground) {
       add_ground(plan, answers);
+    }
+    for (const std::string& stand : related_stands(robot, answers)) {
+      free_frame(plan, stand,
+                 "Where the robot stands.  Where the URDF has zeros, kinecal searches for it.");
     }
     return plan;
   } catch (const RobotError& e) {

@@ -188,6 +188,15 @@ std::string propose_frame(const Robot& robot, std::vector<std::string> names) {
   }
 }
 
+std::string joint_above(const Robot& robot, const std::string& link,
+                        const std::vector<std::string>& joints) {
+  if (!robot.has_link(link)) return "";
+  const Joint* above = robot.parent_joint(link);
+  while (above != nullptr && std::find(joints.begin(), joints.end(), above->name) == joints.end())
+    above = robot.parent_joint(above->parent);
+  return above == nullptr ? "" : above->name;
+}
+
 InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
   const auto propose = [](std::string& answer, const std::string& proposal) {
     if (answer.empty()) answer = proposal;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "kinecal/files/diagnostics.hpp"
+#include "kinecal/text/nearest_name.hpp"
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/possible_targets.hpp"
 #include "kinecal/tools/init/robot_parts.hpp"
@@ -79,6 +80,19 @@ struct NamedSensors {
   for (std::string& name : names)
     (cameras.contains(name) ? found.cameras : found.chains).push_back(std::move(name));
   return found;
+}
+
+/// @throws InputError  if a sensor holds a target and no link has its name, where those of others are links
+void check_holders(const Robot& robot, const std::vector<std::string>& chains) {
+  const auto link = std::find_if(chains.begin(), chains.end(),
+                                 [&](const std::string& name) { return robot.has_link(name); });
+  if (link == chains.end()) return;
+  for (const std::string& name : chains) {
+    if (robot.has_link(name) || name == "arm" || name == "board") continue;
+    throw InputError(fmt::format(
+        "--from: '{}' holds a target, as '{}' does, and is no link of the URDF of '{}'{}", name,
+        *link, robot.name(), did_you_mean(name, robot.link_names())));
+  }
 }
 
 /// @throws InputError  if two sensors hold targets whose points are in one frame
@@ -155,6 +169,7 @@ std::vector<InitAnswers> all_answers_from_samples(const Robot& robot,
                     "the frames of cameras as the links of the URDF are named",
                     option));
   }
+  detail::check_holders(robot, sensors.chains);
   std::vector<InitAnswers> all;
   for (const std::string& camera : sensors.cameras) {
     const std::size_t before = all.size();
@@ -177,6 +192,30 @@ std::vector<InitAnswers> all_answers_from_samples(const Robot& robot,
     if (answers.base.empty()) answers.base = with_proposals(robot, all.front()).base;
   }
   return all;
+}
+
+void relate_stands(const Robot& robot, const std::vector<std::string>& stands,
+                   std::vector<InitAnswers>& all) {
+  if (stands.size() < 2) return;
+  std::map<std::string, std::string> groups = {{"", ""}};  // of stands; "" is the world
+  for (const std::string& stand : stands) groups[stand] = stand;
+  for (InitAnswers& answers : all) {
+    const auto group = [&](const std::string& link) {
+      return groups.at(joint_above(robot, link.empty() ? answers.base : link, stands));
+    };
+    const std::string from = group(answers.arm), to = group(answers.camera);
+    for (auto& [stand, of] : groups) {
+      if (of == from) of = to;
+    }
+    answers.stands.assign(stands.begin() + 1, stands.end());
+  }
+  for (const std::string& stand : stands) {
+    if (groups.at(stand) == groups.at(stands.front())) continue;
+    throw InputError(fmt::format(
+        "--urdf: nothing says where the robot on '{}' stands: no --camera and --arm, or board in "
+        "the world, relates it to the others; let a camera of one robot see the arm of the other",
+        stand));
+  }
 }
 
 std::string pairs_text(const std::vector<InitAnswers>& all) {
