@@ -239,6 +239,7 @@ void add_touched(const Robot& robot, std::span<const Sample> samples,
   answers.tracker = touched.name;
   if (answers.target_frame.empty()) answers.target_frame = held.frames.front();
   answers.places = touched.frames;
+  if (answers.target == InitTarget::grip && answers.arm.empty()) answers.arm = held.frames.front();
   if (answers.target == InitTarget::sockets && touched.varies) {
     answers.layout = places_of(samples, touched.name);
   }

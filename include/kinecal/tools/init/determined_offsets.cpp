@@ -84,6 +84,8 @@ class GeneratedPoses {
 
   /// Positions by joint.
   [[nodiscard]] const std::vector<NamedNumbers>& poses() const { return poses_; }
+  /// Where what is touched is in its link.
+  [[nodiscard]] const Pose<double>& link_T_sensor() const { return link_T_sensor_; }
   /// Of a distance sensor in each pose, metres; else empty.
   [[nodiscard]] const std::vector<double>& distances() const { return distances_; }
 
@@ -113,6 +115,7 @@ class GeneratedPoses {
   [[nodiscard]] std::array<bool, 6> sensor_axes() const {
     switch (measured_.contact) {
       case Contact::none:
+      case Contact::grip:
         return {true, true, true, true, true, true};
       case Contact::line:
         return {true, true, false, true, true, false};
@@ -178,9 +181,18 @@ class GeneratedPoses {
     return base_T_sensor.inverse() * base_T_target;
   }
 
-  /// What a contact shows of a point in its frame.
-  [[nodiscard]] Eigen::VectorXd shown(const Vector3<double>& p) const {
+  /// What a contact shows of what touches it.
+  /// @param seen    in the frame of the contact; of a point, its place
+  /// @param socket  that is touched, in this frame
+  [[nodiscard]] Eigen::VectorXd shown(const Pose<double>& seen,
+                                      const Vector3<double>& socket) const {
+    const Vector3<double> p = seen.translation - socket;
     switch (measured_.contact) {
+      case Contact::grip: {
+        Eigen::VectorXd pose(6);
+        pose << p, log(seen.rotation);
+        return pose;
+      }
       case Contact::line:
         return p.head<2>();
       case Contact::plane:
@@ -199,7 +211,7 @@ class GeneratedPoses {
 
   [[nodiscard]] Eigen::VectorXd touched(const NamedNumbers& offsets, const NamedPoses& corrections,
                                         int socket) const {
-    const Eigen::Index rows = shown(Vector3<double>::UnitX()).size();
+    const Eigen::Index rows = shown({}, Vector3<double>::UnitX()).size();
     Eigen::VectorXd all(rows * static_cast<Eigen::Index>(poses_.size()));
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       NamedPoses of_pose = corrections;
@@ -213,10 +225,9 @@ class GeneratedPoses {
             seen_from(poses_[i], offsets, of_pose).rotation * before.row(2).transpose();
         continue;
       }
-      const Pose<double> sensor_T_target = seen_from(poses_[i], offsets, of_pose);
-      const double distance = distances_.empty() ? 0.0 : distances_[i];
-      all.segment(static_cast<Eigen::Index>(i) * rows, rows) =
-          shown(sensor_T_target * Vector3<double>(0.0, 0.0, distance) - sockets_[socket_of(i)]);
+      Pose<double> seen = seen_from(poses_[i], offsets, of_pose);
+      if (!distances_.empty()) seen.translation = seen * Vector3<double>(0.0, 0.0, distances_[i]);
+      all.segment(static_cast<Eigen::Index>(i) * rows, rows) = shown(seen, sockets_[socket_of(i)]);
     }
     return all;
   }
@@ -239,14 +250,18 @@ class GeneratedPoses {
       poses_.push_back(random_pose());
     }
     for (int i = 0; i < kTries && poses_.empty(); ++i) {
-      // A contact in the middle of what random poses reach, not at its border.
-      Vector3<double> middle = Vector3<double>::Zero();
-      constexpr int kMean = 3;
-      for (int k = 0; k < kMean; ++k) middle += tip_in_base(random_pose()) / kMean;
-      const Pose<double> base_T_sensor = end_of(to_sensor_, random_pose(), {}, {});
-      link_T_sensor_.translation = base_T_sensor.inverse() * middle;
-      if (measured_.contact == Contact::sphere) {
-        link_T_sensor_.translation += kRadius * Vector3<double>(0.6, 0.0, -0.8);
+      if (measured_.contact == Contact::grip) {
+        link_T_sensor_ = random_grip();
+      } else if (!measured_.sensor_frame.empty()) {
+        // A contact in the middle of what random poses reach, not at its border.
+        Vector3<double> middle = Vector3<double>::Zero();
+        constexpr int kMean = 3;
+        for (int k = 0; k < kMean; ++k) middle += tip_in_base(random_pose()) / kMean;
+        const Pose<double> base_T_sensor = end_of(to_sensor_, random_pose(), {}, {});
+        link_T_sensor_.translation = base_T_sensor.inverse() * middle;
+        if (measured_.contact == Contact::sphere) {
+          link_T_sensor_.translation += kRadius * Vector3<double>(0.6, 0.0, -0.8);
+        }
       }
       sockets_ = measured_.layout;
       for (int k = 0; k < measured_.places && measured_.layout.empty(); ++k) {
@@ -256,12 +271,24 @@ class GeneratedPoses {
       distances_.clear();
       for (int n = 0; n < static_cast<int>(20 * count_) && poses_.size() < count_; ++n) {
         NamedNumbers pose = random_pose();
-        const bool touches = measured_.is_point ? reach(pose, drives) : measures(pose);
+        const bool has_tip = measured_.is_point || measured_.contact == Contact::grip;
+        const bool touches = has_tip ? reach(pose, drives) : measures(pose);
         if (touches) poses_.push_back(std::move(pose));
       }
       if (poses_.size() < count_ / 3)
         poses_.clear(), distances_.clear();  // hardly reachable: another place
     }
+  }
+
+  /// How one hand may stand in the other, with something between them that both hold.
+  [[nodiscard]] Pose<double> random_grip() {
+    constexpr double kBetween = 0.3;  // metres
+    const auto random_vector = [&] {
+      const double x = random_number(random_), y = random_number(random_);
+      return Vector3<double>(x, y, random_number(random_));
+    };
+    return {exp(Vector3<double>(std::numbers::pi * random_vector())),
+            kBetween * random_vector().normalized()};
   }
 
   /// Whether a distance sensor measures the plane in a pose; keeps its distance.
@@ -280,8 +307,7 @@ class GeneratedPoses {
     constexpr int kIterations = 30;
     constexpr double kStep = 1e-6, kMost = 0.3, kClose = 1e-9;
     const auto missed = [&](const NamedNumbers& at) -> Eigen::VectorXd {
-      Eigen::VectorXd by =
-          shown(seen_from(at, {}, {}).translation - sockets_[socket_of(poses_.size())]);
+      Eigen::VectorXd by = shown(seen_from(at, {}, {}), sockets_[socket_of(poses_.size())]);
       by.array() -= radius_;
       return by;
     };
@@ -315,6 +341,7 @@ class GeneratedPoses {
   void place() {
     constexpr double kAside = 0.1, kAway = 1.0;  // metres
     const Vector3<double> away(0.5, -0.6, 0.7);
+    if (measured_.contact == Contact::grip) return;  // the hands themselves
     link_T_target_.translation = kAside * away;
     if (!measured_.target_frame.empty() && !measured_.is_point) {
       link_T_target_.rotation = exp(Vector3<double>(0.4, 0.9, -0.3));
@@ -501,7 +528,7 @@ std::vector<std::string> driven_joints(const Robot& robot, const MeasuredTarget&
 TouchingPoses touching_poses(const Robot& robot, const MeasuredTarget& measured, std::size_t count,
                              std::uint64_t seed) {
   const detail::GeneratedPoses generated(robot, measured, {}, count, seed);
-  return {generated.poses(), generated.distances()};
+  return {generated.poses(), generated.distances(), generated.link_T_sensor()};
 }
 
 OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,

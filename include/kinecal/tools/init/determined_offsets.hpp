@@ -6,7 +6,7 @@
 //
 // Of a tip that touches something, poses are random too, then moved by Gauss-Newton until it does, and only the components
 // of p_sensor are looked at that the contact determines: all of a point, x and y of a line, z of a plane, the distance to
-// the center of a sphere.
+// the center of a sphere.  Of two hands that hold one rigid thing, all six numbers of the pose of one in the other.
 //
 // Its derivatives with respect to frames and camera parameters span what these can imitate.  An
 // offset is determined if its derivative is not within this span, nor within that of offsets before
@@ -25,29 +25,31 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/geometry/pose.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/kinematics/robot.hpp"
 
 namespace kinecal {
 
 /// What a tip touches: in its own frame, the origin, the z axis, the plane z = 0, or a sphere about the origin.
-/// Or gravity, as an accelerometer on the arm reads it.
-enum class Contact { none, point, line, plane, sphere, gravity };
+/// Or gravity, as an accelerometer on the arm reads it; or a hand whose pose in another hand stays: both hold one rigid thing.
+enum class Contact { none, point, line, plane, sphere, gravity, grip };
 
 /// A target and the sensor that measures its points; or a tip on an arm and what it touches, fixed to `sensor`.
 struct MeasuredTarget {
-  std::string base;                 ///< link to which chains and frames beyond them refer
-  std::string target;               ///< link that carries the points
-  std::string sensor;               ///< link of the sensor
-  std::string target_frame = {};    ///< free frame of the points in the target's link; empty: none
-  bool is_point = false;            ///< it has a position only, as the frame of a reflector
-  std::string sensor_frame = {};    ///< free frame of the sensor in its link; empty: none
+  std::string base;               ///< link to which chains and frames beyond them refer
+  std::string target;             ///< link that carries the points
+  std::string sensor;             ///< link of the sensor
+  std::string target_frame = {};  ///< free frame of the points in the target's link; empty: none
+  bool is_point = false;          ///< it has a position only, as the frame of a reflector
+  std::string sensor_frame =
+      {};  ///< free frame of the sensor in its link, or of what is touched; empty: none
   bool is_camera = false;           ///< the sensor has intrinsics, which are free
   bool has_depth = false;           ///< it measures points in metres, not pixels
   Contact contact = Contact::none;  ///< what the point of the target touches in every pose
   int places = 1;  ///< of points that the tip touches: each has a free position of its own
   std::vector<Vector3<double>> layout =
-      {};  ///< metres: known places of such points in one frame, whose pose is free
+      {};  ///< metres: known places of such points in one frame, or in the link, if no frame of the sensor is free
   bool radius_known = true;  ///< of a sphere
 };
 
@@ -80,6 +82,8 @@ struct TouchingPoses {
   std::vector<std::map<std::string, double>>
       positions;                  ///< of the joints, by name: radians or metres
   std::vector<double> distances;  ///< that a distance sensor measures, metres; empty: a tip touches
+  Pose<double>
+      sensor_T_touched;  ///< where what is touched is in its link: of hands that hold one thing, the pose that stays
 };
 
 /// Random ones.  Nothing looks for collisions.

@@ -129,8 +129,9 @@ namespace {
 [[nodiscard]] std::string touches_text(const InitAnswers& answers) {
   const bool has_layout = !answers.layout.empty();
   const std::size_t count = has_layout ? answers.layout.size() : answers.places.size();
-  const bool has_direction =
-      answers.target == InitTarget::plane || answers.target == InitTarget::line;
+  const bool has_direction = answers.target == InitTarget::plane ||
+                             answers.target == InitTarget::line ||
+                             answers.target == InitTarget::grip;
   std::string text;
   for (std::size_t i = 0; i < count; ++i) {
     const std::string& frame = answers.places[has_layout ? 0 : i];

@@ -105,8 +105,11 @@ std::vector<InitAnswers> answers_of_all(const Robot& robot, const InitAnswers& g
   detail::check_once(arms, "--arm");
   detail::check_once(cameras, "--camera");
   if (arms.size() > 1 && is_touched(given.target)) {
-    throw InputError(fmt::format("--arm: '{}' is of one arm; make a configuration for each",
-                                 to_string(given.target, given.board)));
+    throw InputError(fmt::format(
+        "--arm: '{}' is of one arm; make a configuration for each.  What relates two arms: a thing "
+        "that both hold (--target grip), or a cone in one hand for the tip of the other (--target "
+        "point --arm {} --touched-link {}); both show the zeros of both arms at once",
+        to_string(given.target, given.board), arms[0], arms[1]));
   }
   const std::vector<std::string> none = {""};
   const auto &of_arms = arms.empty() ? none : arms, &of_cameras = cameras.empty() ? none : cameras;

@@ -22,6 +22,7 @@ namespace {
   if (block.type == PointOnLine::kType) return Contact::line;
   if (block.type == PointDistance::kType) return Contact::sphere;
   if (block.type == GravitySeen::kType) return Contact::gravity;
+  if (block.type == PoseToPose::kType) return Contact::grip;
   return block.type == PointToPoint::kType ? Contact::point : Contact::none;
 }
 
@@ -35,6 +36,42 @@ namespace {
 
 [[nodiscard]] bool turns(const FreeFrameConfig& frame) {
   return frame.axes[3] || frame.axes[4] || frame.axes[5];
+}
+
+/// Known places of sockets that a configuration does not have: such as show the axes of their frame that are free.
+[[nodiscard]] std::vector<Vector3<double>> layout_of(const FreeFrameConfig& frame) {
+  constexpr double kApart = 0.1;  // metres
+  std::vector<Vector3<double>> layout = {Vector3<double>::Zero(), {kApart, 0.0, 0.0}};
+  if (frame.axes[3]) layout.emplace_back(kApart, kApart, 0.0);
+  return layout;
+}
+
+/// Where a fixed frame is, metres.
+[[nodiscard]] Vector3<double> place_of(const FreeFrameConfig& frame, const StepConfig& step) {
+  Vector3<double> place = Vector3<double>::Zero();
+  for (const InitialValueConfig& value : step.initial_values) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      if (value.name == parameter_name(frame.name, kFrameAxes[static_cast<std::size_t>(k)]))
+        place(k) = value.value;
+    }
+  }
+  return place;
+}
+
+/// Both hands of a robot hold one thing: the only frame is that of one hand in the other.
+[[nodiscard]] std::optional<ConfiguredTouch> configured_grip(
+    const Config& config, const BlockConfig& block, const std::vector<std::string>& links) {
+  const std::vector<FreeFrameConfig>& frames = config.steps.back().free_frames;
+  if (frames.size() != 1 || links.front() == links.back()) return std::nullopt;
+  const std::string& grip = frames.front().name;
+  ConfiguredTouch touch{.target = {config.base_link, links.front(), links.back()},
+                        .held = block.models.front(),
+                        .touched = block.models.back(),
+                        .tip = links.front(),
+                        .places = {grip}};
+  touch.target.sensor_frame = grip;
+  touch.target.contact = Contact::grip;
+  return touch;
 }
 
 }  // namespace
@@ -60,12 +97,20 @@ std::optional<ConfiguredTouch> configured_touch(const Config& config) {
     }
   }
   if (links.size() != block->models.size() || step.free_frames.empty()) return std::nullopt;
+  if (touch.target.contact == Contact::grip) return detail::configured_grip(config, *block, links);
   const FreeFrameConfig& tip = detail::frame_of_tip(step.free_frames);
+  bool is_known = false;
   for (const FreeFrameConfig& frame : step.free_frames) {
-    // A tracker's frame turns, that of a point does not.
-    if (touch.target.contact == Contact::point && detail::turns(frame)) return std::nullopt;
-    if (&frame != &tip) touch.places.push_back(frame.name);
+    if (&frame == &tip) continue;
+    touch.places.push_back(frame.name);
+    is_known = is_known || frame.is_fixed;
+    if (frame.is_fixed) touch.target.layout = {detail::place_of(frame, step)};
+    if (touch.target.contact != Contact::point || !detail::turns(frame)) continue;
+    // That of sockets at known places turns like a tracker's; 'init' calls what is touched so.
+    if (block->models.back() != "touched") return std::nullopt;
+    touch.target.layout = detail::layout_of(frame);
   }
+  if (touch.target.contact == Contact::point && detail::turns(tip)) return std::nullopt;
   touch.held = block->models.front();
   touch.tip = tip.name;
   touch.target.base = config.base_link;
@@ -77,13 +122,13 @@ std::optional<ConfiguredTouch> configured_touch(const Config& config) {
   if (touch.places.empty()) return std::nullopt;
   touch.touched = block->models.back();
   touch.target.sensor = links.back();
-  touch.target.sensor_frame = touch.places.front();
+  if (!is_known) touch.target.sensor_frame = touch.places.front();
   touch.target.places = static_cast<int>(touch.places.size());
   return touch;
 }
 
-std::vector<Sample> touched_samples(const Robot& robot, const ConfiguredTouch& touch,
-                                    std::size_t count, std::uint64_t seed) {
+TouchedSamples touched_samples(const Robot& robot, const ConfiguredTouch& touch, std::size_t count,
+                               std::uint64_t seed) {
   const TouchingPoses poses = touching_poses(robot, touch.target, count, seed);
   if (poses.positions.size() < 3) {
     throw InputError(fmt::format(
@@ -91,9 +136,9 @@ std::vector<Sample> touched_samples(const Robot& robot, const ConfiguredTouch& t
   }
   const RuntimeChain to_tip = make_chain(robot, touch.target.base, touch.target.target);
   const Contact contact = touch.target.contact;
-  std::vector<Sample> samples;
+  TouchedSamples made;
   for (std::size_t i = 0; i < poses.positions.size(); ++i) {
-    Sample& sample = samples.emplace_back();
+    Sample& sample = made.samples.emplace_back();
     sample.source = fmt::format("generated pose {}", i + 1);
     for (const auto& [joint, position] : poses.positions[i]) {
       sample.joint_names.push_back(joint);
@@ -102,6 +147,7 @@ std::vector<Sample> touched_samples(const Robot& robot, const ConfiguredTouch& t
     // A tip that the URDF has is a link; its joint is free.
     Feature tip{robot.has_joint(touch.tip) ? touch.target.target : touch.tip,
                 Vector3<double>::Zero()};
+    if (contact == Contact::grip) tip.rotation = Matrix3<double>::Identity();
     if (contact == Contact::gravity) {
       tip.rotation = Matrix3<double>::Identity();
       const Pose<double> hand = forward_kinematics(
@@ -115,11 +161,24 @@ std::vector<Sample> touched_samples(const Robot& robot, const ConfiguredTouch& t
     sample.observations = {{touch.held, {tip}}};
     if (touch.touched.empty()) continue;
     Feature place{touch.places[i % touch.places.size()], Vector3<double>::Zero()};
-    const bool has_direction = contact == Contact::plane || contact == Contact::line;
+    const std::vector<Vector3<double>>& layout = touch.target.layout;
+    const bool is_known = touch.target.sensor_frame.empty();  // its frame is where the point is
+    if (!layout.empty() && !is_known) place.point = layout[i % layout.size()];
+    const bool has_direction =
+        contact == Contact::plane || contact == Contact::line || contact == Contact::grip;
     if (has_direction) place.rotation = Matrix3<double>::Identity();
     sample.observations.push_back({touch.touched, {place}});
   }
-  return samples;
+  if (contact == Contact::grip) {
+    const Pose<double>& grip = poses.sensor_T_touched;
+    Eigen::Matrix<double, 6, 1> numbers;
+    numbers << grip.translation, log(grip.rotation);
+    for (std::size_t k = 0; k < kFrameAxes.size(); ++k) {
+      made.values.add({.name = parameter_name(touch.places.front(), kFrameAxes[k]),
+                       .value = numbers(static_cast<Eigen::Index>(k))});
+    }
+  }
+  return made;
 }
 
 }  // namespace kinecal
