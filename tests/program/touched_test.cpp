@@ -212,9 +212,14 @@ TEST_F(Touched, AGripNeedsTwoHands) {
   EXPECT_THAT(one.err, HasSubstr("--touched-link"));
   write("two_arms.urdf", test::TwoArms::urdf(7));
   const Outcome several =
-      kinecal("init --urdf two_arms.urdf --target sockets --arm left_hand,right_hand");
+      kinecal("init --urdf two_arms.urdf --target plane --arm left_hand,right_hand");
   EXPECT_EQ(several.code, 1);
   EXPECT_THAT(several.err, HasSubstr("--target grip"));
+  const Outcome sockets =
+      kinecal("init --urdf two_arms.urdf --target sockets --arm left_hand,right_hand");
+  EXPECT_EQ(sockets.code, 0) << sockets.err;
+  EXPECT_THAT(read("capture.yaml"),
+              AllOf(HasSubstr("socket_1_left_hand:"), HasSubstr("socket_2_right_hand:")));
 }
 
 TEST_F(Touched, AKnownPlaceOnTheBodyIsHeld) {

@@ -20,6 +20,7 @@
 #include "kinecal/procedure/calibrate_robot.hpp"
 #include "kinecal/tools/init/determined_offsets.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
+#include "kinecal/tools/init/several_answers.hpp"
 #include "support/paths.hpp"
 #include "support/repetitions.hpp"
 #include "support/two_arms.hpp"
@@ -49,8 +50,9 @@ class TouchingArm {
     answers.carrier = carrier_;
     answers.at = at_;
     if (target == InitTarget::bar) answers.length = 0.2;
-    answers = with_proposals(robot_, answers);
-    return answers;
+    std::vector<std::string> arms = {arm_};
+    if (!more_.empty()) arms.push_back(more_);
+    return with_proposals(robot_, answers_of_all(robot_, answers, arms, {}).front());
   }
   [[nodiscard]] MeasuredTarget measured(InitTarget target) const {
     MeasuredTarget touched{answers(target).base, arm_, answers(target).carrier};
@@ -59,6 +61,7 @@ class TouchingArm {
     touched.is_point = target != InitTarget::distance && !is_grip;
     touched.sensor_frame = at_ ? "" : "place";
     if (at_) touched.layout = {*at_};
+    if (!more_.empty()) touched.more_tips = {{more_, "other_tip"}};
     touched.contact = target == InitTarget::plane      ? Contact::plane
                       : target == InitTarget::distance ? Contact::plane
                       : target == InitTarget::gravity  ? Contact::gravity
@@ -118,14 +121,17 @@ class TouchingArm {
             {"arm", {{named.target_frame, Vector3<double>::Zero(), Matrix3<double>::Identity()}}}};
         continue;
       }
+      const std::size_t tip_number = poses.tips.at(number);
+      const FurtherArm more = tip_number > 0 ? named.more_arms.at(tip_number - 1)
+                                             : FurtherArm{holder_of(named), named.target_frame};
       const std::string& place = named.places.at(number++ % named.places.size());
       Feature held{place, Vector3<double>::Zero()};
-      Feature tip{named.target_frame, Vector3<double>(0.0, 0.0, distance)};
+      Feature tip{more.target_frame, Vector3<double>(0.0, 0.0, distance)};
       if (touched.contact == Contact::plane || touched.contact == Contact::line ||
           touched.contact == Contact::grip) {
         held.rotation = tip.rotation = Matrix3<double>::Identity();
       }
-      sample.observations = {{"arm", {tip}}, {"touched", {held}}};
+      sample.observations = {{more.arm, {tip}}, {"touched", {held}}};
     }
     return all;
   }
@@ -134,6 +140,9 @@ class TouchingArm {
   [[nodiscard]] const Pose<double>& place(InitTarget target) const {
     return poses_.at(target).sensor_T_touched;
   }
+
+  /// From now on, the tip of another arm touches the same in every second pose.
+  void touch_with(const std::string& more) { more_ = more; }
 
   /// From now on, the tip stays in a square on the plane that it touches.
   /// @param side  metres
@@ -159,7 +168,7 @@ class TouchingArm {
 
  private:
   Robot robot_;
-  std::string arm_, carrier_;
+  std::string arm_, carrier_, more_;
   std::optional<Vector3<double>> at_;
   std::optional<MeasuredTarget> patch_;  ///< instead of a whole plane
   std::map<InitTarget, TouchingPoses> poses_;
@@ -268,6 +277,31 @@ TEST(TouchedTargets, TwoHandsThatTouchShowTheZerosOfBothArms) {
     count += errors.count;
   }
   std::cout << fmt::format("two hands: error over its ±, rms {:.2f} of {}\n",
+                           std::sqrt(sum / count), count);
+  EXPECT_LE(sum / count, 2.5);
+}
+
+/// Two arms of one torso, each with a tip, in the same two sockets of the world: the first zeros, too, as the width of the torso
+/// is known.
+TEST(TouchedTargets, TwoArmsInTheSameSocketsAreOneCalibration) {
+  TouchingArm arms(parse_urdf(test::TwoArms::urdf(7), "two_arms.urdf"), "left_hand");
+  arms.touch_with("right_hand");
+  EXPECT_EQ(arms.shown(InitTarget::sockets), "xxxxxx-xxxxxx-");
+  double sum = 0.0;
+  int count = 0;
+  for (unsigned seed = 1; seed <= static_cast<unsigned>(test::repetitions(6, 3)); ++seed) {
+    const std::vector<Sample> samples = arms.samples(InitTarget::sockets, seed, kNoise);
+    ASSERT_GE(samples.size(), 40u);
+    const CalibratedRobot found = arms.calibrated(InitTarget::sockets, samples);
+    EXPECT_TRUE(found.is_usable()) << found.judgement.reasons.front();
+    const Errors errors = errors_of(arms, found);
+    EXPECT_EQ(errors.count, 12);
+    EXPECT_LE(errors.worst, 6.0) << "seed " << seed;
+    sum += errors.sum;
+    count += errors.count;
+  }
+  ASSERT_GT(count, 0);
+  std::cout << fmt::format("two arms in the same sockets: error over its ±, rms {:.2f} of {}\n",
                            std::sqrt(sum / count), count);
   EXPECT_LE(sum / count, 2.5);
 }

@@ -66,14 +66,19 @@ class GeneratedPoses {
         count_(count),
         random_(seed),
         measured_(std::move(measured)),
-        to_target_(make_chain(robot, measured_.base, measured_.target, frames)),
+        tips_({{measured_.target, measured_.target_frame}}),
         to_sensor_(make_chain(robot, measured_.base, measured_.sensor, frames)) {
+    tips_.insert(tips_.end(), measured_.more_tips.begin(), measured_.more_tips.end());
+    for (const FurtherTip& tip : tips_)
+      to_tips_.push_back(make_chain(robot, measured_.base, tip.link, frames));
     std::set<std::string> drives;
-    for (const RuntimeChain* chain : {&to_target_, &to_sensor_}) {
-      for (const ChainJoint& joint : chain->joints) {
+    const auto add_drives = [&](const RuntimeChain& chain) {
+      for (const ChainJoint& joint : chain.joints) {
         if (moves(joint.type)) drives.insert(joint.drive.joint);
       }
-    }
+    };
+    for (const RuntimeChain& chain : to_tips_) add_drives(chain);
+    add_drives(to_sensor_);
     place();
     if (measured_.contact == Contact::none) {
       generate(drives);
@@ -84,6 +89,10 @@ class GeneratedPoses {
 
   /// Positions by joint.
   [[nodiscard]] const std::vector<NamedNumbers>& poses() const { return poses_; }
+  /// Which tip touches in a pose: each in turn, after all sockets.
+  [[nodiscard]] std::size_t tip_of(std::size_t pose) const {
+    return sockets_.empty() ? 0 : pose / sockets_.size() % tips_.size();
+  }
   /// Where what is touched is in its link.
   [[nodiscard]] const Pose<double>& link_T_sensor() const { return link_T_sensor_; }
   /// Of a distance sensor in each pose, metres; else empty.
@@ -169,13 +178,13 @@ class GeneratedPoses {
   }
 
   [[nodiscard]] Pose<double> seen_from(const NamedNumbers& pose, const NamedNumbers& offsets,
-                                       const NamedPoses& corrections) const {
+                                       const NamedPoses& corrections, std::size_t tip = 0) const {
     const auto correction = [&](const std::string& frame) {
       const auto found = corrections.find(frame);
       return found == corrections.end() ? Pose<double>() : found->second;
     };
-    const Pose<double> base_T_target = end_of(to_target_, pose, offsets, corrections) *
-                                       link_T_target_ * correction(measured_.target_frame);
+    const Pose<double> base_T_target = end_of(to_tips_[tip], pose, offsets, corrections) *
+                                       link_T_target_ * correction(tips_[tip].frame);
     const Pose<double> base_T_sensor = end_of(to_sensor_, pose, offsets, corrections) *
                                        link_T_sensor_ * correction(measured_.sensor_frame);
     return base_T_sensor.inverse() * base_T_target;
@@ -225,7 +234,7 @@ class GeneratedPoses {
             seen_from(poses_[i], offsets, of_pose).rotation * before.row(2).transpose();
         continue;
       }
-      Pose<double> seen = seen_from(poses_[i], offsets, of_pose);
+      Pose<double> seen = seen_from(poses_[i], offsets, of_pose, tip_of(i));
       if (!distances_.empty()) seen.translation = seen * Vector3<double>(0.0, 0.0, distances_[i]);
       all.segment(static_cast<Eigen::Index>(i) * rows, rows) = shown(seen, sockets_[socket_of(i)]);
     }
@@ -243,20 +252,22 @@ class GeneratedPoses {
         pose[joint] = random_position(driven(robot_, joint), random_);
       return pose;
     };
-    const auto tip_in_base = [&](const NamedNumbers& pose) {
-      return (end_of(to_target_, pose, {}, {}) * link_T_target_).translation;
+    const auto tip_in_base = [&](const NamedNumbers& pose, std::size_t tip) {
+      return (end_of(to_tips_[tip], pose, {}, {}) * link_T_target_).translation;
     };
+    const bool is_known = measured_.sensor_frame.empty();  // where what is touched is
     while (measured_.contact == Contact::gravity && poses_.size() < count_) {
       poses_.push_back(random_pose());
     }
-    for (int i = 0; i < kTries && poses_.empty(); ++i) {
+    for (int i = 0; i < (is_known ? 1 : kTries) && poses_.empty(); ++i) {
       if (measured_.contact == Contact::grip) {
         link_T_sensor_ = random_grip();
-      } else if (!measured_.sensor_frame.empty()) {
+      } else if (!is_known) {
         // A contact in the middle of what random poses reach, not at its border.
         Vector3<double> middle = Vector3<double>::Zero();
-        constexpr int kMean = 3;
-        for (int k = 0; k < kMean; ++k) middle += tip_in_base(random_pose()) / kMean;
+        constexpr std::size_t kMean = 3;
+        for (std::size_t k = 0; k < kMean; ++k)
+          middle += tip_in_base(random_pose(), k % tips_.size()) / kMean;
         const Pose<double> base_T_sensor = end_of(to_sensor_, random_pose(), {}, {});
         link_T_sensor_.translation = base_T_sensor.inverse() * middle;
         if (measured_.contact == Contact::sphere) {
@@ -307,7 +318,8 @@ class GeneratedPoses {
     constexpr int kIterations = 30;
     constexpr double kStep = 1e-6, kMost = 0.3, kClose = 1e-9;
     const auto missed = [&](const NamedNumbers& at) -> Eigen::VectorXd {
-      Eigen::VectorXd by = shown(seen_from(at, {}, {}), sockets_[socket_of(poses_.size())]);
+      const std::size_t next = poses_.size();
+      Eigen::VectorXd by = shown(seen_from(at, {}, {}, tip_of(next)), sockets_[socket_of(next)]);
       by.array() -= radius_;
       return by;
     };
@@ -389,8 +401,8 @@ class GeneratedPoses {
   void put_before_camera(const NamedNumbers& pose) {
     Pose<double> ahead;
     ahead.translation = {0.05, -0.05, 0.7};
-    link_T_target_ =
-        end_of(to_target_, pose, {}, {}).inverse() * (end_of(to_sensor_, pose, {}, {}) * ahead);
+    link_T_target_ = end_of(to_tips_.front(), pose, {}, {}).inverse() *
+                     (end_of(to_sensor_, pose, {}, {}) * ahead);
     link_T_target_.rotation = link_T_target_.rotation * exp(Vector3<double>(0.3, 0.2, 0.5));
   }
 
@@ -398,7 +410,9 @@ class GeneratedPoses {
   std::size_t count_;
   std::mt19937_64 random_;
   MeasuredTarget measured_;
-  RuntimeChain to_target_, to_sensor_;
+  std::vector<FurtherTip> tips_;  ///< the target, then further ones
+  std::vector<RuntimeChain> to_tips_;
+  RuntimeChain to_sensor_;
   Pose<double> link_T_target_, link_T_sensor_;
   std::vector<Vector3<double>> points_;
   std::vector<NamedNumbers> poses_;
@@ -514,7 +528,10 @@ std::array<bool, 6> shown_axes(const std::vector<Vector3<double>>& layout) {
 
 std::vector<std::string> driven_joints(const Robot& robot, const MeasuredTarget& measured) {
   std::vector<std::string> names;
-  for (const std::string& end : {measured.target, measured.sensor}) {
+  std::vector<std::string> ends = {measured.target};
+  for (const FurtherTip& tip : measured.more_tips) ends.push_back(tip.link);
+  ends.push_back(measured.sensor);
+  for (const std::string& end : ends) {
     const RuntimeChain chain = make_chain(robot, measured.base, end);
     for (const ChainJoint& joint : chain.joints) {
       const std::string& name = joint.drive.joint;
@@ -528,7 +545,10 @@ std::vector<std::string> driven_joints(const Robot& robot, const MeasuredTarget&
 TouchingPoses touching_poses(const Robot& robot, const MeasuredTarget& measured, std::size_t count,
                              std::uint64_t seed) {
   const detail::GeneratedPoses generated(robot, measured, {}, count, seed);
-  return {generated.poses(), generated.distances(), generated.link_T_sensor()};
+  TouchingPoses touching{generated.poses(), {}, generated.distances(), generated.link_T_sensor()};
+  for (std::size_t i = 0; i < touching.positions.size(); ++i)
+    touching.tips.push_back(generated.tip_of(i));
+  return touching;
 }
 
 OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
@@ -553,6 +573,7 @@ OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
     target_axes[5] = false;  // about the direction of a distance
   }
   add(measured.target_frame, target_axes);
+  for (const FurtherTip& tip : measured.more_tips) add(tip.frame, target_axes);
 
   OffsetEffects effects;
   detail::Span span;

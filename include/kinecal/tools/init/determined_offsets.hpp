@@ -35,6 +35,12 @@ namespace kinecal {
 /// Or gravity, as an accelerometer on the arm reads it; or a hand whose pose in another hand stays: both hold one rigid thing.
 enum class Contact { none, point, line, plane, sphere, gravity, grip };
 
+/// The tip of a further arm that touches the same.
+struct FurtherTip {
+  std::string link;   ///< at the end of the arm
+  std::string frame;  ///< free frame of the tip in it
+};
+
 /// A target and the sensor that measures its points; or a tip on an arm and what it touches, fixed to `sensor`.
 struct MeasuredTarget {
   std::string base;               ///< link to which chains and frames beyond them refer
@@ -50,7 +56,8 @@ struct MeasuredTarget {
   int places = 1;  ///< of points that the tip touches: each has a free position of its own
   std::vector<Vector3<double>> layout =
       {};  ///< metres: known places of such points in one frame, or in the link, if no frame of the sensor is free
-  bool radius_known = true;  ///< of a sphere
+  bool radius_known = true;                ///< of a sphere
+  std::vector<FurtherTip> more_tips = {};  ///< that touch the same points, one tip in each pose
 };
 
 /// The axes of a frame that touching points of it shows: x y z and the rotations about them.
@@ -72,7 +79,7 @@ struct OffsetEffects {
 };
 
 /// The driven joints that move the target or the sensor: those of the target's chain from its base,
-/// then those of the sensor's.
+/// those of further tips, then those of the sensor's.
 /// @throws RobotError  like make_chain()
 [[nodiscard]] std::vector<std::string> driven_joints(const Robot& robot,
                                                      const MeasuredTarget& measured);
@@ -81,6 +88,7 @@ struct OffsetEffects {
 struct TouchingPoses {
   std::vector<std::map<std::string, double>>
       positions;                  ///< of the joints, by name: radians or metres
+  std::vector<std::size_t> tips;  ///< which one touches in each pose: 0 is the target
   std::vector<double> distances;  ///< that a distance sensor measures, metres; empty: a tip touches
   Pose<double>
       sensor_T_touched;  ///< where what is touched is in its link: of hands that hold one thing, the pose that stays

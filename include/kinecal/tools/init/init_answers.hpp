@@ -148,6 +148,12 @@ inline constexpr std::array<InitTargetWord, 20> kInitTargets = {{
          target != InitTarget::robot && target != InitTarget::grip;
 }
 
+/// A further arm that touches the same places.
+struct FurtherArm {
+  std::string arm;           ///< link at its end, and sensor_name of its tip
+  std::string target_frame;  ///< of its tip
+};
+
 /// The user's answers.  Links are links of the URDF; fields that a target does not need stay empty.
 struct InitAnswers {
   InitTarget target = InitTarget::leds;  ///< the target
@@ -159,6 +165,7 @@ struct InitAnswers {
   std::string camera_name = "camera";    ///< sensor_name of the samples, prefix of its parameters
   std::string target_frame = {};  ///< of the board or the reflector, the frame_id of its points
   std::vector<std::string> more_reflectors = {};  ///< frames of further ones, with a tracker
+  std::vector<FurtherArm> more_arms = {};         ///< that touch the same points or sockets
   std::string tracker_frame = {};  ///< of a laser tracker, the frame_id of its measurements
   InitBoard board = InitBoard::checkerboard;  ///< of a board
   std::string holder = {};   ///< sensor_name of what holds the target; empty: "arm" or "board"

@@ -122,7 +122,9 @@ bool free_offsets(InitPlan& plan, const Robot& robot, const MeasuredTarget& meas
                                "frames and of the offsets above"});
     }
   }
-  for (const std::string& end : {measured.target, measured.sensor}) {
+  std::vector<std::string> ends = {measured.target, measured.sensor};
+  for (const FurtherTip& tip : measured.more_tips) ends.push_back(tip.link);
+  for (const std::string& end : ends) {
     for (const ChainJoint& joint : movers(robot, measured.base, end)) {
       const auto is_known = [&](const InitLeftOut& known) { return known.joint == joint.name; };
       if (joint.drive.joint == joint.name ||
@@ -442,6 +444,8 @@ bool free_arm_and_head(InitPlan& plan, const Robot& robot, const InitAnswers& an
   touched.radius_known = answers.length.has_value();
   touched.places = static_cast<int>(answers.places.size());
   touched.layout = answers.layout;
+  for (const FurtherArm& more : answers.more_arms)
+    touched.more_tips.push_back({more.arm, more.target_frame});
   if (answers.at && touched.layout.empty()) touched.layout = {Vector3<double>::Zero()};
   for (Vector3<double>& place : touched.layout) {
     if (answers.at) place += *answers.at;
@@ -611,6 +615,10 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
           ? "The arm: the plane is at point (0, 0, distance) of frame " + answers.target_frame + "."
           : "The arm: the tip is point (0, 0, 0) of frame " + answers.target_frame + ".",
       holder_of(answers), answers.arm);
+  for (const FurtherArm& more : answers.more_arms) {
+    add_chain_model(plan, "A further arm, with its tip in frame " + more.target_frame + ".",
+                    more.arm, more.arm);
+  }
   add_chain_model(plan, "What it touches, which stands still in this link.", tracker_of(answers),
                   answers.carrier);
   if (is_pose) plan.models.back().fields.front().second = "chain6d";
@@ -635,6 +643,10 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
                       "link of a tip that is in it with --target-frame.",
         true);
   }
+  for (const FurtherArm& more : answers.more_arms) {
+    free_frame(plan, more.target_frame, "Where its tip is in link " + name_to_yaml(more.arm) + ".",
+               true);
+  }
   for (const std::string& place : answers.places) {
     if (!answers.at) add_initial_value(plan, place, "");
   }
@@ -642,6 +654,7 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
     put(plan.initial_values.front(), (1e3 * answers.center).array().round() / 1e3);
   }
   if (!is_link) add_initial_value(plan, tip, "");
+  for (const FurtherArm& more : answers.more_arms) add_initial_value(plan, more.target_frame, "");
   if (!plan.initial_values.empty()) {
     plan.initial_values.front().why =
         "Zeros are no guess: kinecal searches for what the URDF does not have.";
@@ -669,7 +682,13 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
     }
   }
   block.fields.emplace_back("loss", "{type: huber, scale: 3.0}");
-  plan.error_blocks.push_back(std::move(block));
+  plan.error_blocks.push_back(block);
+  for (const FurtherArm& more : answers.more_arms) {
+    block.why.clear();
+    block.name = "contact_" + more.arm;
+    block.fields[1].second = name_to_yaml(more.arm);
+    plan.error_blocks.push_back(block);
+  }
   return plan;
 }
 
@@ -890,6 +909,10 @@ void check_answers(const Robot& robot, const InitAnswers& answers) {
     diagnostics.error({"--touched-at", 0},
                       "of several sockets, sockets.csv beside the configuration says where each is "
                       "(socket, x, y, z in metres), seen from this place");
+  }
+  for (const FurtherArm& more : answers.more_arms) {
+    check_init_link(robot, "--arm", more.arm, diagnostics);
+    check_init_frame(robot, "--target-frame", more.target_frame, diagnostics);
   }
   if (answers.length) check_init_length(target, *answers.length, diagnostics);
   const bool floor = target == InitTarget::ground || answers.with_ground;
