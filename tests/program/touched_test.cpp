@@ -333,6 +333,7 @@ TEST_F(Touched, PosesAreSelectedAndPlannedForEachTarget) {
            {"ur5e.urdf --arm tool0 --target bar --length 0.3", "tip"},
            {"ur5e.urdf --arm tool0 --target point --touched-at 0.3,0.2,0.1", "tip"},
            {hands + " --target point", "tip"},
+           {"two_arms.urdf --arm left_hand,right_hand --target sockets", "left_hand_tip"},
            {hands + " --target grip", "left_hand"}}) {
     const std::string urdf = init.substr(0, init.find(' '));
     ASSERT_EQ(kinecal("init --force --urdf " + init).code, 0) << init;

@@ -74,29 +74,63 @@ namespace {
   return touch;
 }
 
+/// The links of the chains that a block compares; empty if it compares something else.
+[[nodiscard]] std::vector<std::string> links_of(const BlockConfig& block, const StepConfig& step) {
+  std::vector<std::string> links;
+  for (const std::string& name : block.models) {
+    for (const ModelConfig& model : step.models) {
+      if (model.name == name && model.type.starts_with("chain")) links.push_back(model.frame);
+    }
+  }
+  return links.size() == block.models.size() ? links : std::vector<std::string>{};
+}
+
+/// Several arms that touch the same points: the last frames are those of their tips, as `init` writes them.
+/// @param blocks  of each arm
+[[nodiscard]] std::optional<ConfiguredTouch> configured_arms(
+    const Config& config, const std::vector<const BlockConfig*>& blocks) {
+  Config of_one = config;
+  StepConfig& step = of_one.steps.back();
+  std::vector<FreeFrameConfig> frames = step.free_frames;
+  if (frames.size() <= blocks.size()) return std::nullopt;
+  std::stable_partition(frames.begin(), frames.end(),
+                        [](const FreeFrameConfig& frame) { return frame.is_fixed; });
+  const auto tips = frames.end() - static_cast<std::ptrdiff_t>(blocks.size());
+  step.free_frames.assign(frames.begin(), tips + 1);
+  step.error_blocks = {*blocks.front()};
+  std::optional<ConfiguredTouch> touch = configured_touch(of_one);
+  if (!touch || touch->target.contact != Contact::point) return std::nullopt;
+  for (std::size_t i = 1; i < blocks.size(); ++i) {
+    const BlockConfig& block = *blocks[i];
+    const FreeFrameConfig& tip = *(tips + static_cast<std::ptrdiff_t>(i));
+    const std::vector<std::string> links = links_of(block, step);
+    const bool is_same = contact_of(block) == Contact::point && !links.empty() &&
+                         block.models.back() == touch->touched && !turns(tip);
+    if (!is_same) return std::nullopt;
+    touch->more_held.push_back(block.models.front());
+    touch->target.more_tips.push_back({links.front(), tip.name});
+  }
+  return touch;
+}
+
 }  // namespace
 }  // namespace detail
 
 std::optional<ConfiguredTouch> configured_touch(const Config& config) {
   if (config.steps.empty()) return std::nullopt;
   const StepConfig& step = config.steps.back();
-  const BlockConfig* block = nullptr;
+  std::vector<const BlockConfig*> blocks;  // of each arm
   for (const BlockConfig& one : step.error_blocks) {
-    if (!one.param.empty()) continue;  // a prior
-    if (block != nullptr) return std::nullopt;
-    block = &one;
+    if (one.param.empty()) blocks.push_back(&one);  // no prior
   }
-  if (block == nullptr) return std::nullopt;
+  if (blocks.empty()) return std::nullopt;
+  const BlockConfig* const block = blocks.front();
   ConfiguredTouch touch;
   touch.target.contact = detail::contact_of(*block);
   if (touch.target.contact == Contact::none) return std::nullopt;
-  std::vector<std::string> links;
-  for (const std::string& name : block->models) {
-    for (const ModelConfig& model : step.models) {
-      if (model.name == name && model.type.starts_with("chain")) links.push_back(model.frame);
-    }
-  }
-  if (links.size() != block->models.size() || step.free_frames.empty()) return std::nullopt;
+  const std::vector<std::string> links = detail::links_of(*block, step);
+  if (links.empty() || step.free_frames.empty()) return std::nullopt;
+  if (blocks.size() > 1) return detail::configured_arms(config, blocks);
   if (touch.target.contact == Contact::grip) return detail::configured_grip(config, *block, links);
   const FreeFrameConfig& tip = detail::frame_of_tip(step.free_frames);
   bool is_known = false;
@@ -147,6 +181,8 @@ TouchedSamples touched_samples(const Robot& robot, const ConfiguredTouch& touch,
     // A tip that the URDF has is a link; its joint is free.
     Feature tip{robot.has_joint(touch.tip) ? touch.target.target : touch.tip,
                 Vector3<double>::Zero()};
+    const std::size_t further = poses.tips[i];
+    if (further > 0) tip.frame = touch.target.more_tips[further - 1].frame;
     if (contact == Contact::grip) tip.rotation = Matrix3<double>::Identity();
     if (contact == Contact::gravity) {
       tip.rotation = Matrix3<double>::Identity();
@@ -158,7 +194,7 @@ TouchedSamples touched_samples(const Robot& robot, const ConfiguredTouch& touch,
       }
     }
     if (!poses.distances.empty()) tip.point.z() = poses.distances[i];
-    sample.observations = {{touch.held, {tip}}};
+    sample.observations = {{further > 0 ? touch.more_held[further - 1] : touch.held, {tip}}};
     if (touch.touched.empty()) continue;
     Feature place{touch.places[i % touch.places.size()], Vector3<double>::Zero()};
     const std::vector<Vector3<double>>& layout = touch.target.layout;

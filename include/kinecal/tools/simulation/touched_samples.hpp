@@ -20,7 +20,8 @@ struct ConfiguredTouch {
   MeasuredTarget target;      ///< with a contact
   std::string held, touched;  ///< sensors: of the tip, and of what it touches (of gravity: empty)
   std::string tip;            ///< frame of the tip
-  std::vector<std::string> places = {};  ///< frames of what is touched
+  std::vector<std::string> more_held = {};  ///< sensors of the target's further tips
+  std::vector<std::string> places = {};     ///< frames of what is touched
 };
 
 /// nullopt if the configuration is not of a tip that touches something.
