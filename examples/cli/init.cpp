@@ -251,8 +251,8 @@ void answer_names(const Robot& robot, InitOptions& options, InitAnswers& answers
 
 /// The place of --touched-at, metres.
 std::optional<Vector3<double>> touched_at(const InitOptions& options) {
-  if (!options.touched_at) return std::nullopt;
-  const std::vector<double>& at = *options.touched_at;
+  const std::vector<double>& at = options.touched_at;
+  if (at.empty()) return std::nullopt;
   return Vector3<double>(at.at(0), at.at(1), at.at(2));
 }
 
@@ -263,7 +263,7 @@ void check_given(const Robot& robot, const InitOptions& options) {
   for (const std::string& word : options.targets) {
     const auto target = init_target(word);
     if (target && options.length) check_init_length(target->target, *options.length, diagnostics);
-    if (target && options.touched_at)
+    if (target && !options.touched_at.empty())
       check_init_place(target->target, *touched_at(options), diagnostics);
   }
   if (!options.touched_link.empty()) {
@@ -298,7 +298,7 @@ void warn_of_idle(const InitOptions& options, InitTarget target, std::string_vie
   warn(target == InitTarget::tracker, options.tracker_frame, "--tracker-frame");
   warn(has_length(target), options.length ? "given" : "", "--length");
   warn(is_touched(target) && target != InitTarget::gravity, options.touched_link, "--touched-link");
-  warn(has_place(target), options.touched_at ? "given" : "", "--touched-at");
+  warn(has_place(target), options.touched_at.empty() ? "" : "given", "--touched-at");
 }
 
 /// The columns.yaml of a table that samples come from; empty if they come from no table.
@@ -470,8 +470,7 @@ std::string call_of(const InitOptions& options) {
         std::pair("--target-frame", options.target_frame),
         std::pair("--tracker-frame", options.tracker_frame),
         std::pair("--touched-link", options.touched_link),
-        std::pair("--touched-at",
-                  options.touched_at ? fmt::format("{}", fmt::join(*options.touched_at, ",")) : ""),
+        std::pair("--touched-at", fmt::format("{}", fmt::join(options.touched_at, ","))),
         std::pair("--length", options.length ? fmt::format("{}", *options.length) : ""),
         std::pair("--base", options.base)}) {
     if (!value.empty()) call.add_option(option, {value});
