@@ -104,8 +104,9 @@ struct InitOptions {
   std::string base, arm, camera, camera_type, camera_name;  ///< empty: ask, or propose
   std::string target_frame, tracker_frame;                  ///< the same
   std::vector<std::string> targets;
-  std::optional<double> length;      ///< of what the tip touches, metres
-  std::string touched_link;          ///< that carries it; empty: the base
+  std::optional<double> length;    ///< of what the tip touches, metres
+  std::string touched_link;        ///< that carries it; empty: the base
+  std::vector<double> touched_at;  ///< a known place on it: three numbers, metres; empty: not known
   std::vector<std::string> cameras;  ///< names of cameras alone, instead of a robot
   std::string poses;     ///< table of poses of the flange, or samples of another program,
                          ///< instead of a URDF; or empty

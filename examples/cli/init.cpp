@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 #include <utility>
 
 #include "commands.hpp"
@@ -168,24 +167,38 @@ void answer_camera(const Robot& robot, InitOptions& options, InitAnswers& answer
       });
 }
 
-/// The words between commas.
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> words;
-  std::istringstream in(text);
-  for (std::string word; std::getline(in, word, ',');) {
-    const auto begin = word.find_first_not_of(' ');
-    if (begin == std::string::npos) continue;
-    words.push_back(word.substr(begin, word.find_last_not_of(' ') + 1 - begin));
+/// The names of a list as somebody types it: blanks after commas are none of a name.
+std::vector<std::string> typed_names(const std::string& list) {
+  std::vector<std::string> names = names_of_list(list);
+  for (std::string& name : names) {
+    name.erase(0, name.find_first_not_of(' '));
+    name.erase(name.find_last_not_of(' ') + 1);
   }
-  return words;
+  std::erase(names, "");
+  return names;
 }
 
 /// The frame of a board, or those of one or several reflectors.
 void set_target_frames(const std::string& given, InitAnswers& answers) {
-  std::vector<std::string> names = split(given);
+  std::vector<std::string> names = typed_names(given);
   if (names.empty()) return;
   answers.target_frame = names.front();
   answers.more_reflectors.assign(names.begin() + 1, names.end());
+}
+
+/// The other hand that holds the same thing.
+void answer_other_hand(const Robot& robot, InitOptions& options, InitAnswers& answers) {
+  const std::string proposed = with_proposals(robot, answers).carrier;
+  std::vector<std::string> hands = propose_arms(robot);
+  std::erase(hands, answers.arm);
+  if (!proposed.empty()) hands = {proposed};
+  if (!options.touched_link.empty()) return;
+  answers.carrier = options.touched_link = ask(
+      {"--touched-link", "Which link is the other hand, which holds the same thing?",
+       choices(hands)},
+      [&](const std::string& link) {
+        return why_not([&](Diagnostics& d) { check_init_link(robot, "--touched-link", link, d); });
+      });
 }
 
 /// Names that have a proposal: the base, and frames that the URDF does not contain.
@@ -194,7 +207,7 @@ void answer_names(const Robot& robot, InitOptions& options, InitAnswers& answers
   const auto frame = [&](const std::string& given, const Question& question) {
     return ask_unless_given(given, question, [&](const std::string& names) {
       return why_not([&](Diagnostics& d) {
-        for (const std::string& name : split(names)) {
+        for (const std::string& name : typed_names(names)) {
           if (is_touched(answers.target) && robot.has_link(name)) continue;
           check_init_frame(robot, question.option, name, d);
         }
@@ -238,6 +251,13 @@ void answer_names(const Robot& robot, InitOptions& options, InitAnswers& answers
       });
 }
 
+/// The place of --touched-at, metres.
+std::optional<Vector3<double>> touched_at(const InitOptions& options) {
+  const std::vector<double>& at = options.touched_at;
+  if (at.empty()) return std::nullopt;
+  return Vector3<double>(at.at(0), at.at(1), at.at(2));
+}
+
 /// Checks the options before any question, so that no answers are lost.
 void check_given(const Robot& robot, const InitOptions& options) {
   Diagnostics diagnostics;
@@ -245,6 +265,8 @@ void check_given(const Robot& robot, const InitOptions& options) {
   for (const std::string& word : options.targets) {
     const auto target = init_target(word);
     if (target && options.length) check_init_length(target->target, *options.length, diagnostics);
+    if (target && !options.touched_at.empty())
+      check_init_place(target->target, *touched_at(options), diagnostics);
   }
   if (!options.touched_link.empty()) {
     check_init_link(robot, "--touched-link", options.touched_link, diagnostics);
@@ -254,7 +276,7 @@ void check_given(const Robot& robot, const InitOptions& options) {
     for (const std::string& link : links_of(robot, links))
       check_init_link(robot, option, link, diagnostics);
   }
-  for (const std::string& frame : split(options.target_frame)) {
+  for (const std::string& frame : typed_names(options.target_frame)) {
     if (robot.has_link(frame)) continue;  // may be a tip; else initial_config() reports it
     check_init_frame(robot, "--target-frame", frame, diagnostics);
   }
@@ -278,6 +300,7 @@ void warn_of_idle(const InitOptions& options, InitTarget target, std::string_vie
   warn(target == InitTarget::tracker, options.tracker_frame, "--tracker-frame");
   warn(has_length(target), options.length ? "given" : "", "--length");
   warn(is_touched(target) && target != InitTarget::gravity, options.touched_link, "--touched-link");
+  warn(has_place(target), options.touched_at.empty() ? "" : "given", "--touched-at");
 }
 
 /// A file beside the configuration.
@@ -324,6 +347,18 @@ std::string sockets_file(const InitOptions& options, const std::string& columns,
   return name;
 }
 
+/// @param text  of a columns.yaml that is there
+/// @throws InputError  if 'init' wrote it for another target than is asked for now
+void check_target_of_columns(const std::string& file, const std::string& text,
+                             std::optional<InitTarget> target) {
+  const std::optional<InitTarget> before = target_of_columns(text);
+  if (!target || !before || *before == *target) return;
+  throw InputError(fmt::format(
+      "{}: an earlier 'kinecal init' wrote it for target {}, and --target is {}; --force writes it "
+      "anew",
+      file, to_string(*before), to_string(*target)));
+}
+
 /// The samples of --from.  Of a table, the meaning of its columns is proposed, unless a columns.yaml is there.
 std::vector<Sample> read_from(const Robot& robot, const InitOptions& options) {
   Diagnostics diagnostics;
@@ -335,15 +370,18 @@ std::vector<Sample> read_from(const Robot& robot, const InitOptions& options) {
   }
   const std::string& table = options.from.front();
   const bool is_there = std::filesystem::exists(columns);
-  if (is_there &&
-      (!options.force || !detail::read_text_file(columns).starts_with(kProposedColumnsMark))) {
+  const std::optional<InitTarget> target = given_target(robot, options);
+  const std::string known = is_there ? detail::read_text_file(columns) : "";
+  const bool is_ours = known.starts_with(kProposedColumnsMark);
+  if (is_there && (!options.force || !is_ours)) {
+    check_target_of_columns(columns, known, target);
     say("{} is there and is used\n", columns);
   } else {
-    const std::optional<InitTarget> target = given_target(robot, options);
     const bool has_sockets = target ? *target == InitTarget::sockets : options.length.has_value();
+    const bool is_grip = target == InitTarget::grip;
     const std::string sockets = has_sockets ? sockets_file(options, columns, table) : "";
     write_output(columns, proposed_columns(robot, detail::read_text_file(table), table, target,
-                                           sockets, options.target_frame));
+                                           sockets, is_grip ? options.arm : options.target_frame));
     say("wrote {}\n  what each column of {} means, as far as names and values tell: look at it\n",
         columns, table);
   }
@@ -380,6 +418,7 @@ std::vector<InitAnswers> answer_from_samples(const Robot& robot, const InitOptio
   set_target_frames(options.target_frame, given);
   given.length = options.length;
   given.carrier = options.touched_link;
+  given.at = touched_at(options);
   const std::optional<InitTarget> target = given_target(robot, options);
   if (target) given.target = *target;
   std::vector<InitAnswers> all = all_answers_from_samples(robot, samples, given);
@@ -402,6 +441,7 @@ std::vector<InitAnswers> answer(const Robot& robot, InitOptions& options) {
   answers.camera = first_of(robot, options.camera);
   answers.length = options.length;
   answers.carrier = options.touched_link;
+  answers.at = touched_at(options);
   answer_targets(robot, options, answers);
   warn_of_idle(options, answers.target, to_string(answers.target, answers.board));
   if (needs_arm(answers.target) && answers.arm.empty()) {
@@ -411,6 +451,7 @@ std::vector<InitAnswers> answer(const Robot& robot, InitOptions& options) {
                 choices(propose_arms(robot))});
     answers.arm = first_of(robot, options.arm);
   }
+  if (answers.target == InitTarget::grip) answer_other_hand(robot, options, answers);
   if (needs_camera(answers.target)) answer_camera(robot, options, answers);
   answer_names(robot, options, answers);
   return answers_of_all(
@@ -437,6 +478,7 @@ std::string call_of(const InitOptions& options) {
         std::pair("--target-frame", options.target_frame),
         std::pair("--tracker-frame", options.tracker_frame),
         std::pair("--touched-link", options.touched_link),
+        std::pair("--touched-at", fmt::format("{}", fmt::join(options.touched_at, ","))),
         std::pair("--length", options.length ? fmt::format("{}", *options.length) : ""),
         std::pair("--base", options.base)}) {
     if (!value.empty()) call.add_option(option, {value});

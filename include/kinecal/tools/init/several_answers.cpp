@@ -110,6 +110,27 @@ void check_frames_of(const std::vector<InitAnswers>& all) {
   }
 }
 
+/// Several arms that touch the same points or sockets.
+/// @throws InputError  if the target is of one arm
+[[nodiscard]] InitAnswers together(const Robot& robot, InitAnswers answers,
+                                   const std::vector<std::string>& arms) {
+  if (answers.target != InitTarget::point && answers.target != InitTarget::sockets) {
+    throw InputError(fmt::format(
+        "--arm: '{}' is of one arm; make a configuration for each.  What relates two arms: points "
+        "or sockets that both touch (--target point, --target sockets), a thing that both hold "
+        "(--target grip), or a cone in one hand for the tip of the other (--target point --arm {} "
+        "--touched-link {})",
+        to_string(answers.target, answers.board), arms[0], arms[1]));
+  }
+  answers.arm = answers.holder = arms.front();
+  answers.target_frame.clear();
+  const std::string tip = with_proposals(robot, answers).target_frame;
+  answers.target_frame = arms.front() + "_" + tip;
+  for (std::size_t i = 1; i < arms.size(); ++i)
+    answers.more_arms.push_back({arms[i], arms[i] + "_" + tip});
+  return answers;
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -119,8 +140,7 @@ std::vector<InitAnswers> answers_of_all(const Robot& robot, const InitAnswers& g
   detail::check_once(arms, "--arm");
   detail::check_once(cameras, "--camera");
   if (arms.size() > 1 && is_touched(given.target)) {
-    throw InputError(fmt::format("--arm: '{}' is of one arm; make a configuration for each",
-                                 to_string(given.target, given.board)));
+    return {detail::together(robot, given, arms)};
   }
   const std::vector<std::string> none = {""};
   const auto &of_arms = arms.empty() ? none : arms, &of_cameras = cameras.empty() ? none : cameras;
