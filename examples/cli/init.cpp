@@ -586,7 +586,7 @@ void set_stand(const std::string& option, std::vector<RobotPart>& robots) {
                     names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
   }
   std::vector<double> numbers;
-  for (const std::string& word : split(option.substr(std::min(equals + 1, option.size())))) {
+  for (const std::string& word : typed_names(option.substr(std::min(equals + 1, option.size())))) {
     std::istringstream in(word);
     double number = 0.0;
     if (in >> number && in.eof() && std::isfinite(number)) numbers.push_back(number);
