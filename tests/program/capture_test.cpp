@@ -103,9 +103,9 @@ TEST_F(CaptureProgram, ResumesWhereItEnded) {
   const std::string whole = read("views.html"), views = sheet.substr(0, sheet.find("</main>"));
   EXPECT_TRUE(whole.starts_with(views)) << "the views of the first session come first";
   const auto count_of = [](const std::string& page) {
-    int views = 0;
-    for (std::size_t at = 0; (at = page.find("<figure", at)) != std::string::npos; ++at) ++views;
-    return views;
+    int figures = 0;
+    for (std::size_t at = 0; (at = page.find("<figure", at)) != std::string::npos; ++at) ++figures;
+    return figures;
   };
   const int shown = count_of(sheet), all = count_of(whole);
   EXPECT_GT(all, shown);

@@ -22,7 +22,7 @@ using testing::Not;
 
 constexpr int kRecordings = 3, kImages = 11;  // of each recording; the last one at rest
 constexpr double kInterval = 0.4;             // seconds between images
-constexpr double kLag = 0.020;                // seconds by which images are later than their stamps
+constexpr double kImageLag = 0.020;           // seconds by which images are later than their stamps
 constexpr double kSwing = 0.08, kRate = 1.6;  // radians, rad/s
 
 class DetectMotion : public test::ProgramTest {
@@ -76,7 +76,7 @@ class DetectMotion : public test::ProgramTest {
   /// rests for a second.
   void record(int recording) {
     test::Recorder to((folder_ / (std::to_string(recording) + ".mcap")).string(), Encoding::cdr);
-    to.camera_ahead = -std::chrono::round<Stamp>(std::chrono::duration<double>(kLag));
+    to.camera_ahead = -std::chrono::round<Stamp>(std::chrono::duration<double>(kImageLag));
     Diagnostics diagnostics;
     to.camera_info("/eye/camera_info", test::kTourStart,
                    read_camera_file((folder_ / "photos/camera.yaml").string(), diagnostics));
@@ -141,7 +141,7 @@ TEST_F(DetectMotion, GivesSamplesWithVelocitiesAndTheLagOfTheCamera) {
   const std::string result = read("out/calibration.yaml");
   const std::size_t at = result.find("camera_lag:");
   ASSERT_NE(at, std::string::npos) << result;
-  EXPECT_NEAR(std::stod(result.substr(at + 11)), kLag, 2e-4);
+  EXPECT_NEAR(std::stod(result.substr(at + 11)), kImageLag, 2e-4);
 }
 #endif
 

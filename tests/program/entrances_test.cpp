@@ -138,21 +138,21 @@ class Entrances : public test::ProgramTest {
   EXPECT_TRUE((a) == (b)) << name << "\n  " << (a).grade << ": " << (a).reason << "\n  " \
                           << (b).grade << ": " << (b).reason
 
-constexpr const char* kRecordings[] = {"ur5_offsets", "ur5", "panda", "kuka"};
+constexpr const char* kRecorded[] = {"ur5_offsets", "ur5", "panda", "kuka"};
 
 /// All mistakes of all recordings with KINECAL_REPETITIONS; else each of one of them, two where tests are slow.
 bool is_tried(std::size_t mistake, std::size_t recording) {
   if (std::getenv("KINECAL_REPETITIONS") != nullptr) return true;
   if (test::kIsSlow) return mistake < 2 && recording == 0;
-  return mistake == 0 || mistake % std::size(kRecordings) == recording;
+  return mistake == 0 || mistake % std::size(kRecorded) == recording;
 }
 
 TEST_F(Entrances, SayTheSame) {
   KINECAL_NEEDS_RECORDING("kuka");
   std::vector<Mutation> all = test::mutations();
   all.insert(all.begin(), {"nothing_is_wrong", [](Recording&) {}});
-  for (std::size_t number = 0; number < std::size(kRecordings); ++number) {
-    const Recording right = test::recording(kRecordings[number]);
+  for (std::size_t number = 0; number < std::size(kRecorded); ++number) {
+    const Recording right = test::recording(kRecorded[number]);
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (!is_tried(i, number)) continue;
       Recording wrong = right;

@@ -385,14 +385,18 @@ TEST_F(Recheck, FilesOfTwoRunsAreRefusedWhateverReadsThem) {
     for (const char* command : {"verify", "evaluate"}) {
       const Outcome outcome = with_new(command);
       EXPECT_EQ(outcome.code, code) << command << outcome.out << outcome.err;
-      if (code != 0) EXPECT_THAT(outcome.err, HasSubstr("a run was interrupted while it replaced"));
+      if (code != 0) {
+        EXPECT_THAT(outcome.err, HasSubstr("a run was interrupted while it replaced"));
+      }
     }
     fs::remove_all(folder_ / "robot");
     fs::create_directory(folder_ / "robot");
     write("robot/robot.launch", launch);
     EXPECT_EQ(kinecal("install out --to robot").code, code);
     EXPECT_EQ(kinecal("compare out whole").code, code);
-    if (code != 0) EXPECT_EQ(read("robot/robot.launch"), launch);
+    if (code != 0) {
+      EXPECT_EQ(read("robot/robot.launch"), launch);
+    }
   };
   for (const char* replaced :
        {"calibrated.urdf", "calibration.yaml", "original.urdf", "config.yaml", "report.json"}) {

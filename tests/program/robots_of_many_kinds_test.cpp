@@ -328,7 +328,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Kind{"LiftWithHead", lift_with_head(), "apriltag", "tool"},
                     Kind{"TwoLongArms", two_long_arms(), "apriltag", "l_gripper", 20},
                     Kind{"ArmOnPlatform", arm_on_platform(), "world_apriltag", ""}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& kind) { return kind.param.name; });
 
 }  // namespace
 }  // namespace kinecal

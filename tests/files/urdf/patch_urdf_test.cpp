@@ -34,7 +34,7 @@ using testing::StartsWith;
 
 /// Two ways to the same pose: ten joints, each a few operations on numbers of size one, and angles
 /// taken out of a matrix and put back.
-constexpr double kSamePose = 1e-12;
+constexpr double kSamePlace = 1e-12;
 
 /// What a calibration meets: skew axes, sliding joints, mimic joints (one mimics another that
 /// mimics), origins without xyz, without rpy, empty, missing; a joint on one line, tags over
@@ -141,8 +141,8 @@ std::vector<Pose<double>> kinematics_of_file(const std::string& text,
 void expect_equal(const std::vector<Pose<double>>& a, const std::vector<Pose<double>>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_LE((a[i].rotation - b[i].rotation).cwiseAbs().maxCoeff(), kSamePose) << "link " << i;
-    EXPECT_LE((a[i].translation - b[i].translation).cwiseAbs().maxCoeff(), kSamePose)
+    EXPECT_LE((a[i].rotation - b[i].rotation).cwiseAbs().maxCoeff(), kSamePlace) << "link " << i;
+    EXPECT_LE((a[i].translation - b[i].translation).cwiseAbs().maxCoeff(), kSamePlace)
         << "link " << i;
   }
 }
@@ -260,7 +260,7 @@ TEST(PatchUrdf, OnlyNumbersThatChangeAreRewritten) {
   const std::string turned = patched(text, {{"j", 0.0, pose({0, 0, 0}, {0, 0, 0.25})}});
   EXPECT_THAT(turned, HasSubstr("  xyz = '1.0\t2.00  3'/>" + kAB));
   EXPECT_NEAR(rpy_from_rotation(parse_urdf(turned, "r").joint("j").origin.rotation).z(), 0.35,
-              kSamePose);
+              kSamePlace);
 }
 
 TEST(PatchUrdf, WritesTheShortestNumberThatReadsBackTheSame) {
@@ -599,8 +599,8 @@ TEST(PatchUrdfMimic, HoldsTheErrorsOfAMimicJointWhereverZerosGo) {
       const Mimic by = drive(after, after.joint(joint));
       return by.multiplier * published + by.offset + (is_published ? 0.0 : in_origin);
     };
-    EXPECT_NEAR(position("k", 2.0 * 0.25), true_k, kSamePose) << text;
-    EXPECT_NEAR(position("l", -0.5 * 2.0 * 0.25), true_l, kSamePose) << text;
+    EXPECT_NEAR(position("k", 2.0 * 0.25), true_k, kSamePlace) << text;
+    EXPECT_NEAR(position("l", -0.5 * 2.0 * 0.25), true_l, kSamePlace) << text;
   }
 }
 

@@ -64,7 +64,9 @@ TEST_F(Cell, IsSearchedForCameraByCamera) {
   ASSERT_THAT(stages, SizeIs(4));
   EXPECT_THAT(stages[0].frames, SizeIs(2)) << "a camera, and the board";
   for (std::size_t s = 0; s < stages.size(); ++s) {
-    if (s > 0) EXPECT_THAT(stages[s].frames, SizeIs(1));
+    if (s > 0) {
+      EXPECT_THAT(stages[s].frames, SizeIs(1));
+    }
     EXPECT_THAT(stages[s].terms, SizeIs(1));
   }
 }

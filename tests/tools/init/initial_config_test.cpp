@@ -342,7 +342,8 @@ TEST(InitialConfigNames, AreQuotedWhereYamlWouldMistakeThem) {
 
 TEST(InitialConfigOfTheRobotItself, FreesTheJointsOfAGivenArm) {
   const Robot fetch = read_urdf(test::source_folder() + "/examples/robots/fetch/fetch.urdf");
-  InitAnswers answers{.target = InitTarget::robot};
+  InitAnswers answers;
+  answers.target = InitTarget::robot;
   answers.base = "base_link";
   answers.camera = "head_camera_rgb_optical_frame";
   EXPECT_THAT(initial_config(fetch, answers), testing::Not(HasSubstr("- elbow_flex_joint")));
@@ -362,7 +363,8 @@ TEST(InitialConfigOfTheRobotItself, FreesTheCameraOnly) {
   const Robot robot = read_urdf(test::source_folder() + "/examples/robots/fetch/fetch.urdf");
   for (const auto& [type, block] :
        {std::pair("camera3d", "chain3d_to_mesh"), std::pair("camera2d", "camera2d_to_mesh")}) {
-    InitAnswers answers{.target = InitTarget::robot};
+    InitAnswers answers;
+    answers.target = InitTarget::robot;
     answers.camera = propose_cameras(robot).front();
     answers.camera_type = type;
     Diagnostics diagnostics;
