@@ -295,7 +295,7 @@ TEST_F(Touched, ALengthThatTheScaleEatsIsSaid) {
 /// Another target than that of the columns.yaml which is there.
 TEST_F(Touched, ColumnsOfAnotherTargetAreNotUsed) {
   const std::string init =
-      "init --urdf ur5e.urdf --from cone.csv --arm tool0 -o new.yaml --target ";
+      "init --urdf ur5e.urdf --from cone.csv --arm tool0 --output new.yaml --target ";
   ASSERT_EQ(kinecal(init + "point").code, 0);
   fs::remove(folder_ / "new.yaml");
   const Outcome other = kinecal(init + "plane");

@@ -604,7 +604,7 @@ constexpr const char* kTargetMark = "# Target: ";
     const std::array<int, 3> read = accelerometer_columns(table, file);
     return fmt::format(
         "\nconditions:  # what the accelerometer reads, m/s^2\n  ax: {}\n  ay: {}\n  az: {}\n"
-        "\nobservations:\n - sensor: {}  # its axes\n   frame: {}\n   form: quaternion\n"
+        "\nobservations:\n - sensor: {}  # its axes\n   frame: {}\n   form: quaternion_xyzw\n"
         "   constant_poses: [[0, 0, 0, 0, 0, 0, 1]]\n",
         column_name(table, read[0]), column_name(table, read[1]), column_name(table, read[2]),
         holder_of(answers), answers.target_frame);
@@ -613,7 +613,7 @@ constexpr const char* kTargetMark = "# Target: ";
   const bool is_pose = is_grip || target == InitTarget::plane || target == InitTarget::line ||
                        target == InitTarget::distance;
   constexpr const char* kPose =
-      "   form: quaternion\n   constant_poses: [[0, 0, 0, 0, 0, 0, 1]]  # ";
+      "   form: quaternion_xyzw\n   constant_poses: [[0, 0, 0, 0, 0, 0, 1]]  # ";
   std::string tip = is_grip ? std::string(kPose) + "the link itself\n" : "   constant: [0, 0, 0]\n";
   if (target == InitTarget::distance) {
     const int column = distance_column(table);
