@@ -57,7 +57,7 @@ struct TouchTable {
 
 /// A tip of a UR5e in one of two sockets, 50 mm apart in a base.
 MeasuredTarget two_sockets() {
-  MeasuredTarget touched{"base_link", "tool0", "base_link", "tip", true, "sockets"};
+  MeasuredTarget touched{"base", "tool0", "base", "tip", true, "sockets"};
   touched.contact = Contact::point;
   touched.layout = {Vector3<double>::Zero(), {0.05, 0.0, 0.0}};
   return touched;
@@ -223,15 +223,15 @@ TEST_F(Touched, AGripNeedsTwoHands) {
 }
 
 TEST_F(Touched, AKnownPlaceOnTheBodyIsHeld) {
-  MeasuredTarget bore{"base_link", "tool0", "base_link", "tip", true};
+  MeasuredTarget bore{"base", "tool0", "base", "tip", true};
   bore.contact = Contact::point;
   bore.layout = {Vector3<double>(-0.2, 0.3, 0.15)};
   const Robot robot = read_urdf((folder_ / "ur5e.urdf").string());
   const TouchTable table(robot, bore);
   write("bore.csv", table.text);
   const Outcome done = calibrated("ur5e.urdf", "bore.csv",
-                                  "--target point --arm tool0 --base base_link --touched-link "
-                                  "base_link --touched-at -0.2,0.3,0.15");
+                                  "--target point --arm tool0 --base base --touched-link "
+                                  "base --touched-at -0.2,0.3,0.15");
   ASSERT_EQ(done.code, 0) << done.out << done.err;
   EXPECT_THAT(read("calibrate.yaml"),
               AllOf(HasSubstr("fixed_frames:"), HasSubstr("x: -0.2, y: 0.3")));
