@@ -310,18 +310,26 @@ TEST_F(Touched, ColumnsOfAnotherTargetAreNotUsed) {
 
 /// Recorded tables of each target, and poses that nobody has taken yet.
 TEST_F(Touched, PosesAreSelectedAndPlannedForEachTarget) {
-  for (const std::string target :
-       {"point", "tool", "plane", "line", "sphere", "bar --length 0.3"}) {
+  const Robot robot = read_urdf((folder_ / "ur5e.urdf").string());
+  for (const auto& [target, contact] : std::map<std::string, Contact>{{"point", Contact::point},
+                                                                      {"tool", Contact::point},
+                                                                      {"plane", Contact::plane},
+                                                                      {"line", Contact::line},
+                                                                      {"sphere", Contact::sphere},
+                                                                      {"bar", Contact::sphere}}) {
+    MeasuredTarget touched{"base", "tool0", "base", "tip", true, "place"};
+    touched.contact = contact;
+    write("touched.csv", TouchTable(robot, touched).text);
     ASSERT_EQ(
-        kinecal("init --urdf ur5e.urdf --force --from cone.csv --arm tool0 --target " + target)
+        kinecal("init --urdf ur5e.urdf --force --from touched.csv --arm tool0 --target " + target)
             .code,
         0);
-    ASSERT_EQ(kinecal("convert cone.csv samples.yaml --columns columns.yaml --force").code, 0);
+    ASSERT_EQ(kinecal("convert touched.csv samples.yaml --columns columns.yaml --force").code, 0);
     const Outcome chosen = kinecal(
-        "select-poses --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml --count 12 "
+        "select-poses --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml --count 24 "
         "-o few.yaml --force");
     EXPECT_EQ(chosen.code, 0) << target << chosen.out << chosen.err;
-    EXPECT_THAT(chosen.out, HasSubstr("12 of 40 poses selected")) << target;
+    EXPECT_THAT(chosen.out, HasSubstr("24 of 60 poses selected")) << target;
   }
   write("two_arms.urdf", test::TwoArms::urdf(7));
   const std::string hands = "two_arms.urdf --arm left_hand --touched-link right_hand";
