@@ -12,6 +12,7 @@
 
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/tools/init/determined_offsets.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"
@@ -267,6 +268,34 @@ TEST_F(Touched, AWrongSocketAndABallThatDidNotSeatAreNamed) {
   EXPECT_THAT(done.out, AllOf(HasSubstr("(sample 11)"), HasSubstr("(sample 23)"),
                               HasSubstr("samples.yaml:"), HasSubstr("2 of 60 samples left out")));
   (void)expect_zeros(table.wrong);
+}
+
+/// What an accelerometer on the flange reads at rest, in three columns beside the joints.
+TEST_F(Touched, AnAccelerometerShowsTheZerosThatLean) {
+  const Robot robot = read_urdf((folder_ / "ur5e.urdf").string());
+  const RuntimeChain chain = make_chain(robot, "base", "tool0");
+  const std::map<std::string, double> wrong = {{"shoulder_lift_joint", 0.02},
+                                               {"wrist_2_joint", -0.015}};
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(-1.5, 1.5);
+  std::normal_distribution<double> noise(0.0, 0.01);  // m/s^2
+  std::string text, rows;
+  for (int row = 0; row < 60; ++row) {
+    text.clear();
+    const Pose<double> tip = forward_kinematics(chain, [&](const std::string& joint) {
+      const double recorded = anywhere(random);
+      text += joint + ",";
+      rows += fmt::format("{:.9f},", recorded);
+      return recorded + (wrong.contains(joint) ? wrong.at(joint) : 0.0);
+    });
+    const Vector3<double> read = tip.rotation.transpose() * Vector3<double>(0.0, 0.0, 9.81);
+    rows += fmt::format("{:.6f},{:.6f},{:.6f}\n", read.x() + noise(random),
+                        read.y() + noise(random), read.z() + noise(random));
+  }
+  write("gravity.csv", text + "ax,ay,az\n" + rows);
+  const Outcome done = calibrated("ur5e.urdf", "gravity.csv", "--target gravity --arm tool0");
+  ASSERT_EQ(done.code, 0) << done.out << done.err;
+  EXPECT_EQ(expect_zeros(wrong), 2u);
 }
 
 /// Without a length, one factor of all lengths is free: no calibration may set it.

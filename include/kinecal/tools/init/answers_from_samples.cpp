@@ -248,10 +248,28 @@ void add_several_touching(const Robot& robot, std::span<const Sample> samples,
     answers.more_arms.push_back({(*arm)->name, (*arm)->frames.front()});
 }
 
+/// The axes of an accelerometer: one sensor, as gravity is touched by nothing.
+/// @throws InputError  if there are several
+void add_accelerometer(const Robot& robot, std::span<const Sample> samples,
+                       const std::vector<const SeenSensor*>& chains, InitAnswers& answers) {
+  if (chains.size() != 1) {
+    throw InputError(fmt::format(
+        "--from: of an accelerometer, samples have one sensor, its axes, and what it reads as "
+        "conditions, not {}",
+        chains.empty() ? std::string("no sensor") : names_of(chains)));
+  }
+  answers.holder = chains.front()->name;
+  if (answers.target_frame.empty()) answers.target_frame = chains.front()->frames.front();
+  if (answers.arm.empty()) answers.arm = moving_arm(robot, samples, "");
+}
+
 /// A tip and what it touches: two sensors without a camera, neither of which measures.
 /// @throws InputError  if there are not two
 void add_touched(const Robot& robot, std::span<const Sample> samples,
                  const std::vector<const SeenSensor*>& chains, InitAnswers& answers) {
+  if (answers.target == InitTarget::gravity) {
+    return add_accelerometer(robot, samples, chains, answers);
+  }
   const bool are_several = chains.size() > 2 && (answers.target == InitTarget::point ||
                                                  answers.target == InitTarget::sockets);
   if (are_several) return add_several_touching(robot, samples, chains, answers);
