@@ -139,7 +139,8 @@ TEST(SamplePoses, AreTheSchurComplementOfTheLargeProblem) {
     }
     EXPECT_NEAR(whole.cost, cost, 1e-9 * cost);
     EXPECT_LE((whole.gradient - gradient).norm(), 1e-6 * gradient.norm());
-    EXPECT_LE((whole.hessian - hessian).norm(), 1e-8 * hessian.norm());
+    // As well as the poses are found.
+    EXPECT_LE((whole.hessian - hessian).norm(), 1e-6 * hessian.norm());
   }
 }
 
