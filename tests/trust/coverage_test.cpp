@@ -221,7 +221,7 @@ TEST(Coverage, OfTheFetchWithARobustLossAndOutliers) {
 TEST(Coverage, OfTheFetchItsLedsAndTheFloorWithSigmasThatAreEstimated) {
   Simulated fetch = test::fetch_and_leds(60, 10);
   fetch.name += " and the floor, estimated sigmas";
-  const int some = test::kIsSlow ? 8 : 150;
+  const int some = test::kIsSlow ? 8 : 60;
   Coverage(fetch, calibrate_with_estimates, test::repetitions_of_study(500, some)).check();
 }
 

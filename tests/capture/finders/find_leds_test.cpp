@@ -92,7 +92,7 @@ LedScene any_scene(unsigned seed) {
 TEST(FindLeds, FindsAllThatLightAndNoOther) {
   int lit = 0, seen = 0;
   double sum = 0.0;
-  for (int n = 0; n < test::repetitions(30, 5); ++n) {
+  for (int n = 0; n < test::repetitions(12, 5); ++n) {
     LedScene scene = any_scene(static_cast<unsigned>(n));
     for (const bool works : scene.works) lit += static_cast<int>(works);
     const Found found = n % 2 == 0 ? found_in(scene) : found_in(scene, informed(scene));

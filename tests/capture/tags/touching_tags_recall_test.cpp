@@ -134,7 +134,7 @@ TEST(TouchingTagsRecall, NearlyAllTagsAreFoundAndNoCornerIsAPixelOff) {
 
 TEST(TouchingTagsRecall, LargeBlurredImagesAreSearchedAtReducedSize) {
   Recall recall;
-  for (int seed = 0; seed < test::repetitions(6, 1); ++seed) {
+  for (int seed = 0; seed < test::repetitions(2, 1); ++seed) {
     RandomView random = random_view(seed);
     random.how.blur = 2.0;
     recall.add(random, 3);

@@ -192,7 +192,7 @@ double expected_error(const ProjectionMap& map, const TrueCamera& truth,
 /// Within 2 % of the smallest error held out in 95 of 100 cameras; what is good images as the true camera does, as far
 /// as its +- of a pixel says.
 TEST(FindLenses, ImagesAsWellAsAnyOther) {
-  const int cameras = test::repetitions_of_study(500, test::kIsSlow ? 2 : 10);
+  const int cameras = test::repetitions_of_study(500, test::kIsSlow ? 2 : 6);
   int near = 0, solved = 0, good = 0, wrong = 0;
   double worst = 0.0;
   std::vector<double> ratios;  // of the error to what the report expects, of those that are good

@@ -338,7 +338,7 @@ TEST(TouchedTargets, OneThingInBothHandsFindsTheZerosWithPlusMinusThatCover) {
     TouchingArm arms = two_arms(joints);
     double sum = 0.0, off = 0.0, apart = 0.0;
     int count = 0;
-    const int draws = test::repetitions(12, 4);
+    const int draws = test::repetitions(5, 2);
     for (int seed = 1; seed <= draws; ++seed) {
       const std::vector<Sample> samples =
           arms.samples(InitTarget::grip, static_cast<unsigned>(seed), kNoise);
