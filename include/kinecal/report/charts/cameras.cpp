@@ -72,13 +72,13 @@ using Sights = std::map<int, Sight>;
   return columns;
 }
 
-constexpr double kExplained = 1.5, kFarOff = 3.0;  // times what noise explains
+constexpr double kExplained = 1.5, kMuchMore = 3.0;  // times what noise explains
 
 [[nodiscard]] const char* class_of_sight(const Sight& sight) {
   const double times = sight.times();
   return !std::isfinite(times) ? "faint l2"
          : times <= kExplained ? "after l2"
-         : times <= kFarOff    ? "after"
+         : times <= kMuchMore    ? "after"
                                : "bad";
 }
 
