@@ -78,7 +78,7 @@ constexpr double kExplained = 1.5, kMuchMore = 3.0;  // times what noise explain
   const double times = sight.times();
   return !std::isfinite(times) ? "faint l2"
          : times <= kExplained ? "after l2"
-         : times <= kMuchMore    ? "after"
+         : times <= kMuchMore  ? "after"
                                : "bad";
 }
 
