@@ -38,13 +38,16 @@ void complete_names(const std::vector<std::string>& images, std::vector<CsvRow>&
   }
 }
 
-/// True if a folder has a file of that name, which may lack its ending.
-[[nodiscard]] bool has_image(const std::string& folder, const std::string& name) {
+/// The names of the files of folders, with and without their endings.
+[[nodiscard]] std::set<std::string> names_in(const std::vector<std::string>& folders) {
+  std::set<std::string> names;
   std::error_code failed;
-  for (const auto& file : std::filesystem::directory_iterator(folder, failed)) {
-    if (file.path().filename() == name || file.path().stem() == name) return true;
+  for (const std::string& folder : folders) {
+    for (const auto& file : std::filesystem::directory_iterator(folder, failed)) {
+      names.insert({file.path().filename().string(), file.path().stem().string()});
+    }
   }
-  return false;
+  return names;
 }
 
 /// Assigns images to rows.
@@ -54,6 +57,7 @@ void complete_names(const std::vector<std::string>& images, std::vector<CsvRow>&
     const std::vector<CsvRow>& rows, std::optional<std::size_t> image, const ImageFolder& folder,
     const std::vector<std::string>& names, Diagnostics& diagnostics) {
   std::map<std::string, std::string> result;
+  const std::set<std::string> of_others = names_in(folder.others);
   std::set<std::string> used;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const SourceLocation place{folder.table, rows[i].line};
@@ -66,8 +70,7 @@ void complete_names(const std::vector<std::string>& images, std::vector<CsvRow>&
                                    std::to_string(rows.size()) + " rows, " + folder.images +
                                    " has " + std::to_string(names.size()) + " images");
     } else if (!std::binary_search(names.begin(), names.end(), file, file_naturally_before)) {
-      const auto has_it = [&](const std::string& other) { return has_image(other, file); };
-      if (std::any_of(folder.others.begin(), folder.others.end(), has_it)) continue;
+      if (of_others.contains(file)) continue;
       diagnostics.error(place, "image '" + printable(name) + "' is not in " + folder.images +
                                    (folder.others.empty() ? did_you_mean(file, names)
                                                           : ", nor in that of another camera"));
