@@ -21,6 +21,9 @@ namespace kinecal {
 
 /// Begins the name of a condition that is one of the sample before: "before left_wheel".
 inline constexpr std::string_view kBefore = "before ";
+/// The condition that numbers the runs of a recording: a sample of another run is not the sample before, and samples of a
+/// run may err together.
+inline constexpr const char* kRun = "run";
 
 /// One observed point, pixel, pose or reading.
 struct Feature {

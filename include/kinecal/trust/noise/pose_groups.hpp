@@ -34,6 +34,10 @@ struct PoseGroups {
 /// @param samples  those of the problem, in their order
 [[nodiscard]] PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> samples);
 
+/// Poses by run (kRun): the floor, the tyres and the tracking of a run err alike.  As they are where fewer than five runs
+/// are numbered, or not all samples are.
+[[nodiscard]] PoseGroups by_run(const PoseGroups& poses, std::span<const Sample> samples);
+
 /// Number of such poses, one of several samples among them; of samples, where nothing moves.
 [[nodiscard]] int distinct_poses(const AnyProblem& problem, std::span<const Sample> samples);
 
