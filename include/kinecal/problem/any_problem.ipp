@@ -515,6 +515,7 @@ KINECAL_INLINE void AnyProblem::set_measurements(int sample, const Observation& 
 }
 
 KINECAL_INLINE FeatureLabel AnyProblem::feature(int term, int sample, std::ptrdiff_t i) const {
+  if (terms_[static_cast<std::size_t>(term)].quantities.empty()) return {-1};
   const auto& all = samples_[static_cast<std::size_t>(sample)].labels;
   const auto labels = all.find(term);
   if (labels == all.end()) return {static_cast<int>(i)};

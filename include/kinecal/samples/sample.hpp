@@ -57,11 +57,12 @@ struct CameraInfo {
 
 /// The name of a feature in messages and tables: its place and its id.
 struct FeatureLabel {
-  int place = 0;               ///< from 0, in the list of the observation
+  int place = 0;  ///< from 0, in the list of the observation; -1: a residual without a sensor, of the sample itself
   std::optional<int> id = {};  ///< Feature::id, if it has one
 
-  /// "feature 3", counted from 1, or "the feature with id 17".
+  /// "feature 3", counted from 1, "the feature with id 17" or "the sample".
   [[nodiscard]] std::string text() const {
+    if (place < 0) return "the sample";
     return id ? "the feature with id " + std::to_string(*id)
               : "feature " + std::to_string(place + 1);
   }

@@ -146,6 +146,7 @@ PoseGroups by_run(const PoseGroups& poses, std::span<const Sample> samples) {
         numbers.try_emplace(run->second, static_cast<int>(numbers.size())).first->second);
   }
   runs.count = static_cast<int>(numbers.size());
+  runs.are_runs = true;
   return runs.count < kFewest ? poses : runs;
 }
 

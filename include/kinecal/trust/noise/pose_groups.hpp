@@ -18,6 +18,7 @@ namespace kinecal {
 struct PoseGroups {
   std::vector<int> of_sample;  ///< number of its pose, from 0, in the order of the samples
   int count = 0;               ///< number of poses
+  bool are_runs = false;       ///< they are runs of a recording: see by_run()
 
   /// Samples per pose, in the mean.
   [[nodiscard]] double readings() const {
