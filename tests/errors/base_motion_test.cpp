@@ -91,8 +91,7 @@ Eigen::VectorXd residual(const std::vector<double>& at, double wrong = 0.0) {
   own[last] += wrong;
   std::array<double, B::kConditions.size()> conditions{};
   auto next = std::copy(at.begin(), at.end(), conditions.begin());
-  const std::vector<double> other =
-      kResiduals<B> == 3 ? seen.track() : seen.wall();
+  const std::vector<double> other = kResiduals<B> == 3 ? seen.track() : seen.wall();
   std::copy(other.begin(), other.end(), next);
   return block(own, conditions);
 }
@@ -119,8 +118,13 @@ TEST(BaseBlocks, TakeFullTurns) {
   expect_zero_at_the_truth<OdometryToPose, OdometryToWall>({0.0, 0.0, full, 0.0, 0.0, 0.0});
   const std::array<double, 2> own{1.02, 0.003};
   const double turned = 1.02 * full + 0.003 * 4.0;
-  EXPECT_NEAR(GyroToPose{}(own, std::array{full, 4.0, 0.0, 0.0, std::remainder(turned, 2.0 * std::numbers::pi), 0.0})(0), 0.0, kRounding);
-  EXPECT_NEAR(GyroToWall{}(own, std::array{full, 4.0, 0.0, 0.0, -std::remainder(turned, 2.0 * std::numbers::pi), 0.0})(0), 0.0, kRounding);
+  EXPECT_NEAR(GyroToPose{}(own, std::array{full, 4.0, 0.0, 0.0,
+                                           std::remainder(turned, 2.0 * std::numbers::pi), 0.0})(0),
+              0.0, kRounding);
+  EXPECT_NEAR(
+      GyroToWall{}(own, std::array{full, 4.0, 0.0, 0.0,
+                                   -std::remainder(turned, 2.0 * std::numbers::pi), 0.0})(0),
+      0.0, kRounding);
 }
 
 /// The odometry of a base that turns and drives is that of its wheels, to scale.

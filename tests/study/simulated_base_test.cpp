@@ -62,18 +62,16 @@ TEST(SimulatedBase, ErrorsAreFound) {
   constexpr double kExact = 1e-7;
   const SimulatedBase noisy = wrong_base(), base = exact(noisy);
   const std::vector<std::string> scales{"track_width_scale", "rollout_scale"};
-  for (const JudgedResult& judged :
-       {calibrated<DifferentialToPose>(base, noisy, scales),
-        calibrated<DifferentialToWall>(base, noisy, scales),
-        calibrated<OdometryToPose>(base, noisy, scales),
-        calibrated<OdometryToWall>(base, noisy, scales)}) {
+  for (const JudgedResult& judged : {calibrated<DifferentialToPose>(base, noisy, scales),
+                                     calibrated<DifferentialToWall>(base, noisy, scales),
+                                     calibrated<OdometryToPose>(base, noisy, scales),
+                                     calibrated<OdometryToWall>(base, noisy, scales)}) {
     ASSERT_TRUE(judged.result.converged) << judged.result.termination;
     EXPECT_NEAR(value(judged, "track_width_scale"), 1.02, kExact);
     EXPECT_NEAR(value(judged, "rollout_scale"), 0.98, kExact);
   }
-  for (const JudgedResult& judged :
-       {calibrated<GyroToPose>(base, noisy, {"scale", "bias"}),
-        calibrated<GyroToWall>(base, noisy, {"scale", "bias"})}) {
+  for (const JudgedResult& judged : {calibrated<GyroToPose>(base, noisy, {"scale", "bias"}),
+                                     calibrated<GyroToWall>(base, noisy, {"scale", "bias"})}) {
     EXPECT_NEAR(value(judged, "scale"), 0.98, kExact);
     EXPECT_NEAR(value(judged, "bias"), 0.002, kExact);
   }
@@ -84,11 +82,14 @@ TEST(SimulatedBase, WheelsAndTheMountOfTheLaserAreFoundTogether) {
   base.left_rollout_scale = 0.985;
   base.mount = {0.26, -0.02, 0.05};
   const JudgedResult judged = calibrated<DifferentialToPose>(
-      base, noisy, {"track_width_scale", "left_rollout_scale", "right_rollout_scale", "x", "y", "yaw"});
+      base, noisy,
+      {"track_width_scale", "left_rollout_scale", "right_rollout_scale", "x", "y", "yaw"});
   const std::map<std::string, double> truth{{"track_width_scale", 1.02},
                                             {"left_rollout_scale", 0.985},
                                             {"right_rollout_scale", 0.98},
-                                            {"x", 0.26}, {"y", -0.02}, {"yaw", 0.05}};
+                                            {"x", 0.26},
+                                            {"y", -0.02},
+                                            {"yaw", 0.05}};
   for (const auto& [name, is] : truth) EXPECT_NEAR(value(judged, name), is, 1e-7) << name;
 }
 
@@ -111,8 +112,7 @@ void expect_coverage(const char* name, const std::vector<std::string>& names,
   for (int n = 0; n < repetitions; ++n) {
     SimulatedBase base = wrong_base();
     base.of_runs = of_runs;
-    const JudgedResult judged =
-        calibrated<B>(base, base, names, static_cast<std::uint64_t>(n + 1));
+    const JudgedResult judged = calibrated<B>(base, base, names, static_cast<std::uint64_t>(n + 1));
     ASSERT_TRUE(judged.result.converged);
     EXPECT_NE(judged.judgement.verdict, Grade::do_not_use) << n;
     coverage.add(judged.result, judged.assessments.back(),
@@ -124,11 +124,13 @@ void expect_coverage(const char* name, const std::vector<std::string>& names,
 TEST(BaseCoverage, IntervalsOfWheelsCoverTheTruth) {
   expect_coverage<DifferentialToPose>(
       "wheels, tracked pose", {"track_width_scale", "left_rollout_scale", "right_rollout_scale"},
-      {{"track_width_scale", 1.02}, {"left_rollout_scale", 0.98}, {"right_rollout_scale", 0.98}}, 0.0);
+      {{"track_width_scale", 1.02}, {"left_rollout_scale", 0.98}, {"right_rollout_scale", 0.98}},
+      0.0);
 }
 TEST(BaseCoverage, IntervalsByTheWallCoverTheTruth) {
   expect_coverage<OdometryToWall>("odometry, wall", {"track_width_scale", "rollout_scale"},
-                                  {{"track_width_scale", 1.02}, {"rollout_scale", 0.98}}, 0.0, true);
+                                  {{"track_width_scale", 1.02}, {"rollout_scale", 0.98}}, 0.0,
+                                  true);
 }
 TEST(BaseCoverage, IntervalsOfTheGyroscopeCoverTheTruth) {
   expect_coverage<GyroToWall>("gyroscope, wall", {"scale", "bias"},
@@ -136,9 +138,9 @@ TEST(BaseCoverage, IntervalsOfTheGyroscopeCoverTheTruth) {
 }
 /// The floor of each run is another one: samples of a run err alike.
 TEST(BaseCoverage, IntervalsCoverTheTruthWhereRunsDiffer) {
-  expect_coverage<DifferentialToPose>("wheels, runs that differ by 0.5 %",
-                                      {"track_width_scale", "rollout_scale"},
-                                      {{"track_width_scale", 1.02}, {"rollout_scale", 0.98}}, 0.005);
+  expect_coverage<DifferentialToPose>(
+      "wheels, runs that differ by 0.5 %", {"track_width_scale", "rollout_scale"},
+      {{"track_width_scale", 1.02}, {"rollout_scale", 0.98}}, 0.005);
 }
 
 TEST(SimulatedBase, SlipsAreLeftOut) {
@@ -146,9 +148,9 @@ TEST(SimulatedBase, SlipsAreLeftOut) {
   base.slip_chance = 0.03;
   const BaseRecording recording = simulate_base(base, all_runs(), 3);
   ASSERT_GT(recording.slipped.size(), 3u);
-  const JudgedResult judged = test::judged_base(test::block_of<DifferentialToPose>(base),
-                                                {"track_width_scale", "rollout_scale"},
-                                                recording.samples);
+  const JudgedResult judged =
+      test::judged_base(test::block_of<DifferentialToPose>(base),
+                        {"track_width_scale", "rollout_scale"}, recording.samples);
   std::set<int> left_out;
   for (const LeftOutSample& sample : judged.left_out) {
     left_out.insert(sample.number - 1);
@@ -187,7 +189,8 @@ TEST(SimulatedBase, UpstreamsFormulaHasTheReciprocalOfTheTrackWidth) {
   EXPECT_NEAR(upstream_scale(samples, "odom_yaw"), 0.98 / 1.02, 1e-6);
   const JudgedResult judged = test::judged_base(test::block_of<OdometryToWall>(wrong_base()),
                                                 {"track_width_scale", "rollout_scale"}, samples);
-  EXPECT_NEAR(value(judged, "track_width_scale") / value(judged, "rollout_scale"), 1.02 / 0.98, 1e-6);
+  EXPECT_NEAR(value(judged, "track_width_scale") / value(judged, "rollout_scale"), 1.02 / 0.98,
+              1e-6);
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ Calibration base_calibration(const B& block, const std::vector<std::string>& nam
   add_parameters(table, "base", parameters_of(block));
   std::vector<int> free;
   for (const std::string& name : names) free.push_back(table.index("base_" + name));
-  auto problem = std::make_unique<Problem>(mobile_manipulator(), "base_link", table, std::set<std::string>());
+  auto problem =
+      std::make_unique<Problem>(mobile_manipulator(), "base_link", table, std::set<std::string>());
   problem->add_block("base", block, {});
   return make_calibration(std::move(problem), FreeSet(std::move(free), table.size()), samples);
 }

@@ -61,9 +61,9 @@ struct MecanumDrive {
                                              detail::scale_parameter("rollout_scale"),
                                              detail::scale_parameter("lateral_scale")};
   static constexpr std::array<std::string_view, 8> kConditions = {
-      "front_left_wheel",         "front_right_wheel",       "rear_left_wheel",
-      "rear_right_wheel",         "before front_left_wheel", "before front_right_wheel",
-      "before rear_left_wheel",   "before rear_right_wheel"};
+      "front_left_wheel",       "front_right_wheel",       "rear_left_wheel",
+      "rear_right_wheel",       "before front_left_wheel", "before front_right_wheel",
+      "before rear_left_wheel", "before rear_right_wheel"};
 
   double wheel_radius = 1.0;  ///< metres; 1: the positions are metres
   double track_width = 1.0;   ///< metres between the wheels of an axle
@@ -87,8 +87,8 @@ struct TricycleDrive {
   static constexpr std::array kParameters = {
       detail::scale_parameter("wheelbase_scale"), detail::scale_parameter("rollout_scale"),
       detail::scale_parameter("steering_scale"), ParameterInfo{"steering_offset", "rad"}};
-  static constexpr std::array<std::string_view, 4> kConditions = {"wheel", "steering",
-                                                                  "before wheel", "before steering"};
+  static constexpr std::array<std::string_view, 4> kConditions = {
+      "wheel", "steering", "before wheel", "before steering"};
 
   double wheel_radius = 1.0;  ///< metres; 1: the positions are metres
   double wheelbase = 1.0;     ///< metres between the steered wheel and the axle
@@ -127,8 +127,8 @@ struct ReportedOdometry {
     const S turn = turned * (own[1] / own[0]), half = 0.5 * (turn - turned);
     const auto is_arc = abs(S(turned)) < S(kOneArc);
     const Q chord = detail::sinc(Q(0.5 * turned));
-    const S ratio = select(is_arc, S(detail::sinc(S(0.5 * turn)) /
-                                     select(is_arc, S(chord), S(1.0))), S(1.0)),
+    const S ratio = select(
+                is_arc, S(detail::sinc(S(0.5 * turn)) / select(is_arc, S(chord), S(1.0))), S(1.0)),
             c = own[1] * ratio * cos(half), s = own[1] * ratio * sin(half);
     return {c * reported.x - s * reported.y, s * reported.x + c * reported.y, cos(turn), sin(turn)};
   }

@@ -52,9 +52,9 @@ template <class Q>
 template <class D>
 struct SensorOnBase {
   static constexpr const char* kUnit = "1";  ///< of the residual
-  static constexpr auto kParameters =
-      concatenated(D::kParameters, std::array{ParameterInfo{"x", "m"}, ParameterInfo{"y", "m"},
-                                              ParameterInfo{"yaw", "rad"}});
+  static constexpr auto kParameters = concatenated(
+      D::kParameters,
+      std::array{ParameterInfo{"x", "m"}, ParameterInfo{"y", "m"}, ParameterInfo{"yaw", "rad"}});
 
   D drive = {};                    ///< its nominal dimensions
   std::array<double, 3> mount{};   ///< x, y, metres, and yaw, radians, of the sensor on the base
@@ -177,11 +177,21 @@ struct OdometryToWall : detail::DriveToWall<ReportedOdometry> {
   static constexpr const char* kType = "odometry_to_wall";  ///< name in configurations
 };
 
+/// True for the type of an error block of a mobile base, in configurations and reports.
+[[nodiscard]] inline bool is_base_type(std::string_view type) {
+  constexpr std::array<std::string_view, 5> kDrives = {"differential", "mecanum", "tricycle",
+                                                       "odometry", "gyro"};
+  return std::any_of(kDrives.begin(), kDrives.end(), [&](std::string_view drive) {
+    return type.starts_with(drive) &&
+           (type.substr(drive.size()) == "_to_pose" || type.substr(drive.size()) == "_to_wall");
+  });
+}
+
 /// A gyroscope, against a tracked pose.
 struct GyroToPose : detail::Gyro {
   static constexpr const char* kType = "gyro_to_pose";  ///< name in configurations
-  static constexpr auto kConditions =
-      detail::concatenated(Gyro::kConditions, std::array<std::string_view, 2>{"track_yaw", "before track_yaw"});
+  static constexpr auto kConditions = detail::concatenated(
+      Gyro::kConditions, std::array<std::string_view, 2>{"track_yaw", "before track_yaw"});
 
   /// What the gyroscope says, less what was tracked.
   /// @param own  scale, a factor; bias, rad/s
@@ -196,8 +206,8 @@ struct GyroToPose : detail::Gyro {
 /// A gyroscope, against a wall.
 struct GyroToWall : detail::Gyro {
   static constexpr const char* kType = "gyro_to_wall";  ///< name in configurations
-  static constexpr auto kConditions =
-      detail::concatenated(Gyro::kConditions, std::array<std::string_view, 2>{"wall_angle", "before wall_angle"});
+  static constexpr auto kConditions = detail::concatenated(
+      Gyro::kConditions, std::array<std::string_view, 2>{"wall_angle", "before wall_angle"});
 
   /// What the gyroscope says, less how far the wall swept to the right.
   /// @param own  scale, a factor; bias, rad/s

@@ -57,7 +57,8 @@ struct CameraInfo {
 
 /// The name of a feature in messages and tables: its place and its id.
 struct FeatureLabel {
-  int place = 0;  ///< from 0, in the list of the observation; -1: a residual without a sensor, of the sample itself
+  int place =
+      0;  ///< from 0, in the list of the observation; -1: a residual without a sensor, of the sample itself
   std::optional<int> id = {};  ///< Feature::id, if it has one
 
   /// "feature 3", counted from 1, "the feature with id 17" or "the sample".

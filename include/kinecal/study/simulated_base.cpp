@@ -30,9 +30,8 @@ class BaseDriver {
   BaseDriver(const SimulatedBase& base, std::uint64_t seed) : base_(base), random_(seed) {}
 
   void begin_run(const BaseRun& run) {
-    state_.true_pose = PlanarMotion<double>::at(
-        -0.5 * run.ahead * run.seconds, 0.0,
-        run.turn == 0.0 ? 0.0 : random_.uniform(-0.1, 0.1));
+    state_.true_pose = PlanarMotion<double>::at(-0.5 * run.ahead * run.seconds, 0.0,
+                                                run.turn == 0.0 ? 0.0 : random_.uniform(-0.1, 0.1));
     of_run_ = 1.0 + base_.of_runs * random_.normal();
   }
   /// @returns  true if a wheel slipped
@@ -56,8 +55,7 @@ class BaseDriver {
     state_.right += turned[1];
     const std::array<double, 4> nominal{1.0, 1.0, 1.0, 1.0}, at{turned[0], turned[1], 0.0, 0.0};
     state_.odom = state_.odom * base_.drive.motion(nominal.data(), at.data());
-    state_.odom_yaw +=
-        base_.drive.wheel_radius * (turned[1] - turned[0]) / base_.drive.track_width;
+    state_.odom_yaw += base_.drive.wheel_radius * (turned[1] - turned[0]) / base_.drive.track_width;
     state_.gyro_yaw += (turn - base_.imu_bias * seconds) / base_.imu_scale +
                        base_.gyro * std::sqrt(seconds) * random_.normal();
     state_.time += seconds;
@@ -65,8 +63,7 @@ class BaseDriver {
   }
   [[nodiscard]] Sample sample(int run) {
     const PlanarMotion<double> laser =
-        state_.true_pose *
-        PlanarMotion<double>::at(base_.mount[0], base_.mount[1], base_.mount[2]);
+        state_.true_pose * PlanarMotion<double>::at(base_.mount[0], base_.mount[1], base_.mount[2]);
     constexpr double kSeen = 1.0;  // radians
     constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
     const double wall_angle = -laser.angle(), distance = base_.wall - laser.x;

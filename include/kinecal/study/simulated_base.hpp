@@ -17,22 +17,22 @@ namespace kinecal {
 
 /// A base on two wheels, what is wrong with it and how well it is seen.
 struct SimulatedBase {
-  DifferentialDrive drive{0.0605, 0.37476};  ///< nominal
-  double track_width_scale = 1.0;            ///< the true one over the nominal one
-  double left_rollout_scale = 1.0;           ///< of the left wheel, true over nominal
-  double right_rollout_scale = 1.0;          ///< of the right wheel, true over nominal
-  double imu_scale = 1.0;                    ///< true rate over that of the gyroscope
-  double imu_bias = 0.0;                     ///< added to the rate, rad/s
+  DifferentialDrive drive{0.0605, 0.37476};     ///< nominal
+  double track_width_scale = 1.0;               ///< the true one over the nominal one
+  double left_rollout_scale = 1.0;              ///< of the left wheel, true over nominal
+  double right_rollout_scale = 1.0;             ///< of the right wheel, true over nominal
+  double imu_scale = 1.0;                       ///< true rate over that of the gyroscope
+  double imu_bias = 0.0;                        ///< added to the rate, rad/s
   std::array<double, 3> mount{0.23, 0.0, 0.0};  ///< x, y, metres, yaw, radians, of the laser
   double wall = 3.0;                            ///< distance of the wall from the start, metres
 
-  double period = 0.25;          ///< between samples, seconds
+  double period = 0.25;            ///< between samples, seconds
   double tracked_position = 2e-3;  ///< standard deviation of the tracked position, metres
   double tracked_angle = 2e-3;     ///< of its angle and of that of the wall, radians
   double wall_distance = 2e-3;     ///< of the distance of the wall, metres
   double rolling = 2e-3;           ///< of a wheel's way of one metre, metres; grows with its root
-  double of_runs = 0.0;     ///< of what both wheels roll in a run, a part: the floor, the tyres
-  double gyro = 5e-4;       ///< of the integral of the gyroscope's rate over a second, radians
+  double of_runs = 0.0;      ///< of what both wheels roll in a run, a part: the floor, the tyres
+  double gyro = 5e-4;        ///< of the integral of the gyroscope's rate over a second, radians
   double slip_chance = 0.0;  ///< of a slip in a sample
   double slip = 0.05;        ///< what a wheel turns without moving the base, metres
 };

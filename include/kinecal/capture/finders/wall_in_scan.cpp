@@ -10,7 +10,6 @@
 #include <numbers>
 #include <vector>
 
-
 namespace kinecal {
 
 namespace detail {
@@ -65,9 +64,8 @@ struct Line {
       if ((points[b] - points[a]).norm() < 5.0 * within) continue;
       const Line line = through(points[a], points[b]);
       const auto count = static_cast<std::size_t>(
-          std::count_if(points.begin(), points.end(), [&](const Eigen::Vector2d& p) {
-            return std::abs(line.off(p)) <= within;
-          }));
+          std::count_if(points.begin(), points.end(),
+                        [&](const Eigen::Vector2d& p) { return std::abs(line.off(p)) <= within; }));
       if (count > most) most = count, best = line;
     }
   }

@@ -325,9 +325,8 @@ struct JointCause {
   constexpr int kIterations = 4;
   double change = 0.0;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    const std::vector<TrialRows> found =
-        trials({with_condition(sample, name, change),
-                with_condition(sample, name, change + kJointStep)});
+    const std::vector<TrialRows> found = trials(
+        {with_condition(sample, name, change), with_condition(sample, name, change + kJointStep)});
     if (!found[0].defined || !found[1].defined) break;
     const Eigen::VectorXd slope = (found[1].rows - found[0].rows) / kJointStep;
     if (!(slope.squaredNorm() > 0.0)) break;
@@ -358,9 +357,9 @@ struct JointCause {
     explain.push_back({after.rows.squaredNorm(), text});
   }
   if (!explain.empty()) {
-    return std::min_element(explain.begin(), explain.end(), [](const auto& a, const auto& b) {
-             return a.chi2 < b.chi2;
-           })->text;
+    return std::min_element(explain.begin(), explain.end(),
+                            [](const auto& a, const auto& b) { return a.chi2 < b.chi2; })
+        ->text;
   }
   return drives ? "wheels slipped, or what was tracked jumped" : "";
 }
