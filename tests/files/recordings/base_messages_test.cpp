@@ -106,9 +106,12 @@ class BaseDrive : public testing::Test {
  protected:
   std::vector<Sample> read(const BagOptions& of) {
     const std::string path = (folder_.path() / "drive.bag").string();
-    write_drive(
-        path, SimulatedBase{.tracked_position = 1e-6, .tracked_angle = 1e-6, .wall_distance = 1e-6},
-        of);
+    write_drive(path,
+                SimulatedBase{.tracked_position = 1e-6,
+                              .tracked_angle = 1e-6,
+                              .wall_distance = 1e-6,
+                              .rolling = 1e-5},
+                of);
     found_ = {};
     return read_recording(path, found_).samples;
   }
@@ -151,7 +154,18 @@ TEST_F(BaseDrive, ATrackedPoseNeedsNoScans) {
 TEST_F(BaseDrive, WhatIsMissingIsSaid) {
   EXPECT_THAT(read({.has_scans = false}), IsEmpty());
   ASSERT_EQ(found_.errors.size(), 1u);
+  EXPECT_THAT(found_.errors[0], HasSubstr("no messages of robot_calibration_msgs"));
+  found_ = {};
+  EXPECT_THAT(read_base_drive((folder_.path() / "drive.bag").string(), found_), IsEmpty());
+  ASSERT_EQ(found_.errors.size(), 1u);
   EXPECT_THAT(found_.errors[0], HasSubstr("takes scans of a wall"));
+}
+
+TEST_F(BaseDrive, AGyroscopeAloneIsEnough) {
+  const std::vector<Sample> samples = read({.has_odometry = false});
+  EXPECT_THAT(found_.errors, IsEmpty());
+  ASSERT_GT(samples.size(), 30u);
+  EXPECT_EQ(samples.back().conditions.at(kRun), 6.0);  // it does not see straight runs
 }
 
 TEST_F(BaseDrive, AGyroscopeThatTurnsTheOtherWayAndClocksThatDifferAreDoubts) {

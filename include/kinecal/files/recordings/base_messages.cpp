@@ -310,13 +310,19 @@ class BaseMessages {
   /// Numbers runs, and leaves out samples that are near to others or stand still.
   [[nodiscard]] std::vector<Sample> thinned(std::vector<Sample> samples) const {
     constexpr double kSpeed = 0.01, kStill = 0.5, kFar = 0.05;  // m/s or rad/s, s, m or rad
-    const std::string prefix = odom_.empty() ? "track_" : "odom_";
+    const std::vector<std::string> names =
+        !odom_.empty()      ? std::vector<std::string>{"odom_x", "odom_y", "odom_yaw"}
+        : !tracked_.empty() ? std::vector<std::string>{"track_x", "track_y", "track_yaw"}
+        : !wheels_.empty()  ? std::vector<std::string>{"left_wheel", "right_wheel"}
+                            : std::vector<std::string>{"gyro_yaw"};
     const auto apart = [&](const Sample& a, const Sample& b) {
-      const auto by = [&](const char* name) {
-        const auto x = a.conditions.find(prefix + name), y = b.conditions.find(prefix + name);
-        return x == a.conditions.end() || y == b.conditions.end() ? kFar : y->second - x->second;
-      };
-      return std::max(std::hypot(by("x"), by("y")), std::abs(by("yaw")));
+      double most = 0.0;
+      for (const std::string& name : names) {
+        const double by = std::abs(b.conditions.at(name) - a.conditions.at(name));
+        if (!std::isfinite(by)) return by;
+        most = std::max(most, by);
+      }
+      return most;
     };
     std::vector<Sample> kept;
     int run = 0;
@@ -363,9 +369,9 @@ class BaseMessages {
 }  // namespace
 }  // namespace detail
 
-bool is_of_base(const BagTopic& topic) {
-  return topic.type == "nav_msgs/Odometry" || topic.type == "sensor_msgs/Imu" ||
-         topic.type == "sensor_msgs/LaserScan";
+bool shows_base(const BagTopic& topic) {
+  return topic.type == "sensor_msgs/LaserScan" || topic.type == "geometry_msgs/PoseStamped" ||
+         topic.type == "geometry_msgs/PoseWithCovarianceStamped";
 }
 
 std::vector<Sample> read_base_drive(const std::string& path, Diagnostics& diagnostics) {

@@ -22,8 +22,8 @@
 
 namespace kinecal {
 
-/// True for a topic with such messages, but joint states, which other recordings have, too.
-[[nodiscard]] bool is_of_base(const BagTopic& topic);
+/// True for a topic that shows how a base moved: scans, a tracked pose.
+[[nodiscard]] bool shows_base(const BagTopic& topic);
 
 /// The samples of a drive; none if the bag has no odometry, gyroscope or wheels, or nothing to compare them with: that is an
 /// error.

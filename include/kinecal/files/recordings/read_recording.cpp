@@ -84,7 +84,7 @@ Recording read_as_recorded(const std::string& path, Diagnostics& diagnostics, un
   bool is_drive = false;
   const auto wants = [&](const BagTopic& topic) {
     const TopicUse use = use_of(topic);
-    is_drive = is_drive || is_of_base(topic);
+    is_drive = is_drive || shows_base(topic);
     return use == TopicUse::samples || use == TopicUse::urdf;
   };
   read_bag(path, {wants, handle, meter}, diagnostics);
