@@ -87,12 +87,12 @@ struct Updates {
 
 Updates follow(const Work& work) {
   const CalibrationStep& step = work.calibration.steps.back();
-  const auto frames = compared_frames(*step.problem, work.samples).value();
+  const ComparedFrames frames = compared_frames(*step.problem, work.samples).front();
   const Eigen::VectorXd values = work.calibration.table.values();
   const auto make = [&] { return step.problem->without_samples(); };
   OnlineCalibration online(make, step.free,
-                           {values.data(), static_cast<std::size_t>(values.size())}, frames.first,
-                           frames.second);
+                           {values.data(), static_cast<std::size_t>(values.size())}, frames.frame,
+                           frames.in);
   std::vector<double> times;
   for (const Sample& sample : work.samples) {
     times.push_back(fastest(1, [&] { (void)online.add(sample); }));

@@ -217,10 +217,13 @@ NextPose next_pose(const CaptureOptions& options, const CaptureConfig& config,
       std::fflush(stdout);
       if (!std::getline(std::cin, line) || line == "q") return std::nullopt;
       if (places.empty()) return CapturePose{};
-      // "2" is socket_2.
-      const auto named = std::find_if(places.begin(), places.end(), [&](const std::string& name) {
+      // "2" is socket_2, if no other ends so.
+      const auto is_meant = [&](const std::string& name) {
         return name == line || (!line.empty() && name.ends_with("_" + line));
-      });
+      };
+      auto named = std::find(places.begin(), places.end(), line);
+      if (named == places.end() && std::count_if(places.begin(), places.end(), is_meant) == 1)
+        named = std::find_if(places.begin(), places.end(), is_meant);
       if (named != places.end()) return CapturePose{{}, {}, {*named}};
       say("'{}' is none of them\n", line);
     }

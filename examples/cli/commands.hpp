@@ -95,14 +95,18 @@ int check(const InputOptions& options);
 int inspect(const std::vector<std::string>& samples);
 
 struct InitOptions {
-  std::string urdf, output = "calibrate.yaml";
+  std::vector<std::string> urdfs;   ///< a file, or NAME=FILE of each of several robots
+  std::vector<std::string> stands;  ///< NAME=X,Y,Z,ROLL,PITCH,YAW of some of them
+  std::string urdf = {};            ///< of the robot, or of all of them: written beside the output
+  std::string output = "calibrate.yaml";
   std::string capture;            ///< file; empty: capture.yaml beside the output
   std::vector<std::string> from;  ///< samples that give the answers; empty: ask
   std::string base, arm, camera, camera_type, camera_name;  ///< empty: ask, or propose
   std::string target_frame, tracker_frame;                  ///< the same
   std::vector<std::string> targets;
-  std::optional<double> length;      ///< of what the tip touches, metres
-  std::string touched_link;          ///< that carries it; empty: the base
+  std::optional<double> length;    ///< of what the tip touches, metres
+  std::string touched_link;        ///< that carries it; empty: the base
+  std::vector<double> touched_at;  ///< a known place on it: three numbers, metres; empty: not known
   std::vector<std::string> cameras;  ///< names of cameras alone, instead of a robot
   std::string poses;     ///< table of poses of the flange, or samples of another program,
                          ///< instead of a URDF; or empty

@@ -83,11 +83,12 @@ void check_links(const DetectOptions& options, const Robot& robot, Diagnostics& 
 /// Errors of joints of the photographs that the robot does not have.
 void check_joints(const DetectOptions& options, const DetectionInput& task,
                   Diagnostics& diagnostics) {
-  if (task.images.empty() || !task.robot) return;
+  const std::vector<PosedImage>& images = task.rig.empty() ? task.images : task.rig.front().images;
+  if (images.empty() || !task.robot) return;
   std::vector<std::string> joints;
   for (const Joint& joint : task.robot->joints()) joints.push_back(joint.name);
   const bool has_columns = !options.columns.empty();
-  for (const std::string& name : task.images.front().joints.names) {
+  for (const std::string& name : images.front().joints.names) {
     if (task.robot->has_joint(name)) continue;
     const std::string nearest = did_you_mean(name, joints);
     diagnostics.errors.push_back(
@@ -204,10 +205,15 @@ DetectionInput read_task(const DetectOptions& options, Diagnostics& diagnostics)
   (void)make_finders(task, diagnostics.errors);
   if (!options.camera.empty()) task.camera = read_camera_argument(options.camera, diagnostics);
   const std::vector<std::string> cameras = cameras_of(options);
+  const auto folder_of_camera = [&](const std::string& camera) {
+    return options.images + "/" + camera;
+  };
   for (const std::string& camera : cameras) {
-    const std::string folder = options.images + "/" + camera;
-    task.rig.push_back(
-        {camera, list_images({folder, options.poses, options.columns, {}}, diagnostics)});
+    ImageFolder folder{folder_of_camera(camera), options.poses, options.columns, {}};
+    for (const std::string& other : cameras) {
+      if (other != camera) folder.others.push_back(folder_of_camera(other));
+    }
+    task.rig.push_back({camera, list_images(folder, diagnostics)});
   }
   if (!options.images.empty() && cameras.empty()) {
     task.images =
@@ -304,7 +310,8 @@ int detect(const DetectOptions& given) {
       counted(found.features, "feature"), count - found.used, count_of_targets(samples));
   if (!sheets.empty()) say("wrote {}\n", sheets);
   if (options.every) print_speed(samples, task.robot);
-  print_lacks(samples, cameras_of(options));
+  // With the poses of a robot, each camera need not see what another one sees.
+  print_lacks(samples, options.poses.empty() ? cameras_of(options) : std::vector<std::string>());
   return kDone;
 }
 

@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
-#include <sstream>
 #include <utility>
 
 #include "commands.hpp"
@@ -15,6 +15,7 @@
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/results/standard_output.hpp"
 #include "kinecal/files/text_file.hpp"
+#include "kinecal/files/urdf/joined_urdf.hpp"
 #include "kinecal/files/urdf/patch_urdf.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/name_list.hpp"
@@ -166,24 +167,38 @@ void answer_camera(const Robot& robot, InitOptions& options, InitAnswers& answer
       });
 }
 
-/// The words between commas.
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> words;
-  std::istringstream in(text);
-  for (std::string word; std::getline(in, word, ',');) {
-    const auto begin = word.find_first_not_of(' ');
-    if (begin == std::string::npos) continue;
-    words.push_back(word.substr(begin, word.find_last_not_of(' ') + 1 - begin));
+/// The names of a list as somebody types it: blanks after commas are none of a name.
+std::vector<std::string> typed_names(const std::string& list) {
+  std::vector<std::string> names = names_of_list(list);
+  for (std::string& name : names) {
+    name.erase(0, name.find_first_not_of(' '));
+    name.erase(name.find_last_not_of(' ') + 1);
   }
-  return words;
+  std::erase(names, "");
+  return names;
 }
 
 /// The frame of a board, or those of one or several reflectors.
 void set_target_frames(const std::string& given, InitAnswers& answers) {
-  std::vector<std::string> names = split(given);
+  std::vector<std::string> names = typed_names(given);
   if (names.empty()) return;
   answers.target_frame = names.front();
   answers.more_reflectors.assign(names.begin() + 1, names.end());
+}
+
+/// The other hand that holds the same thing.
+void answer_other_hand(const Robot& robot, InitOptions& options, InitAnswers& answers) {
+  const std::string proposed = with_proposals(robot, answers).carrier;
+  std::vector<std::string> hands = propose_arms(robot);
+  std::erase(hands, answers.arm);
+  if (!proposed.empty()) hands = {proposed};
+  if (!options.touched_link.empty()) return;
+  answers.carrier = options.touched_link = ask(
+      {"--touched-link", "Which link is the other hand, which holds the same thing?",
+       choices(hands)},
+      [&](const std::string& link) {
+        return why_not([&](Diagnostics& d) { check_init_link(robot, "--touched-link", link, d); });
+      });
 }
 
 /// Names that have a proposal: the base, and frames that the URDF does not contain.
@@ -192,7 +207,7 @@ void answer_names(const Robot& robot, InitOptions& options, InitAnswers& answers
   const auto frame = [&](const std::string& given, const Question& question) {
     return ask_unless_given(given, question, [&](const std::string& names) {
       return why_not([&](Diagnostics& d) {
-        for (const std::string& name : split(names)) {
+        for (const std::string& name : typed_names(names)) {
           if (is_touched(answers.target) && robot.has_link(name)) continue;
           check_init_frame(robot, question.option, name, d);
         }
@@ -236,6 +251,13 @@ void answer_names(const Robot& robot, InitOptions& options, InitAnswers& answers
       });
 }
 
+/// The place of --touched-at, metres.
+std::optional<Vector3<double>> touched_at(const InitOptions& options) {
+  const std::vector<double>& at = options.touched_at;
+  if (at.empty()) return std::nullopt;
+  return Vector3<double>(at.at(0), at.at(1), at.at(2));
+}
+
 /// Checks the options before any question, so that no answers are lost.
 void check_given(const Robot& robot, const InitOptions& options) {
   Diagnostics diagnostics;
@@ -243,6 +265,8 @@ void check_given(const Robot& robot, const InitOptions& options) {
   for (const std::string& word : options.targets) {
     const auto target = init_target(word);
     if (target && options.length) check_init_length(target->target, *options.length, diagnostics);
+    if (target && !options.touched_at.empty())
+      check_init_place(target->target, *touched_at(options), diagnostics);
   }
   if (!options.touched_link.empty()) {
     check_init_link(robot, "--touched-link", options.touched_link, diagnostics);
@@ -252,7 +276,7 @@ void check_given(const Robot& robot, const InitOptions& options) {
     for (const std::string& link : links_of(robot, links))
       check_init_link(robot, option, link, diagnostics);
   }
-  for (const std::string& frame : split(options.target_frame)) {
+  for (const std::string& frame : typed_names(options.target_frame)) {
     if (robot.has_link(frame)) continue;  // may be a tip; else initial_config() reports it
     check_init_frame(robot, "--target-frame", frame, diagnostics);
   }
@@ -276,6 +300,12 @@ void warn_of_idle(const InitOptions& options, InitTarget target, std::string_vie
   warn(target == InitTarget::tracker, options.tracker_frame, "--tracker-frame");
   warn(has_length(target), options.length ? "given" : "", "--length");
   warn(is_touched(target) && target != InitTarget::gravity, options.touched_link, "--touched-link");
+  warn(has_place(target), options.touched_at.empty() ? "" : "given", "--touched-at");
+}
+
+/// A file beside the configuration.
+std::string beside_output(const InitOptions& options, const char* name) {
+  return (std::filesystem::path(options.output).parent_path() / name).string();
 }
 
 /// The columns.yaml of a table that samples come from; empty if they come from no table.
@@ -284,7 +314,7 @@ std::string columns_file(const InitOptions& options) {
   const std::string extension = std::filesystem::path(options.from.front()).extension().string();
   const bool is_table = extension == ".csv" || extension == ".tsv" || extension == ".txt";
   if (!is_table) return "";
-  return (std::filesystem::path(options.output).parent_path() / "columns.yaml").string();
+  return beside_output(options, "columns.yaml");
 }
 
 /// The target given as an option, without the floor; nullopt if none is.
@@ -317,6 +347,18 @@ std::string sockets_file(const InitOptions& options, const std::string& columns,
   return name;
 }
 
+/// @param text  of a columns.yaml that is there
+/// @throws InputError  if 'init' wrote it for another target than is asked for now
+void check_target_of_columns(const std::string& file, const std::string& text,
+                             std::optional<InitTarget> target) {
+  const std::optional<InitTarget> before = target_of_columns(text);
+  if (!target || !before || *before == *target) return;
+  throw InputError(fmt::format(
+      "{}: an earlier 'kinecal init' wrote it for target {}, and --target is {}; --force writes it "
+      "anew",
+      file, to_string(*before), to_string(*target)));
+}
+
 /// The samples of --from.  Of a table, the meaning of its columns is proposed, unless a columns.yaml is there.
 std::vector<Sample> read_from(const Robot& robot, const InitOptions& options) {
   Diagnostics diagnostics;
@@ -328,15 +370,18 @@ std::vector<Sample> read_from(const Robot& robot, const InitOptions& options) {
   }
   const std::string& table = options.from.front();
   const bool is_there = std::filesystem::exists(columns);
-  if (is_there &&
-      (!options.force || !detail::read_text_file(columns).starts_with(kProposedColumnsMark))) {
+  const std::optional<InitTarget> target = given_target(robot, options);
+  const std::string known = is_there ? detail::read_text_file(columns) : "";
+  const bool is_ours = known.starts_with(kProposedColumnsMark);
+  if (is_there && (!options.force || !is_ours)) {
+    check_target_of_columns(columns, known, target);
     say("{} is there and is used\n", columns);
   } else {
-    const std::optional<InitTarget> target = given_target(robot, options);
     const bool has_sockets = target ? *target == InitTarget::sockets : options.length.has_value();
+    const bool is_grip = target == InitTarget::grip;
     const std::string sockets = has_sockets ? sockets_file(options, columns, table) : "";
     write_output(columns, proposed_columns(robot, detail::read_text_file(table), table, target,
-                                           sockets, options.target_frame));
+                                           sockets, is_grip ? options.arm : options.target_frame));
     say("wrote {}\n  what each column of {} means, as far as names and values tell: look at it\n",
         columns, table);
   }
@@ -373,6 +418,7 @@ std::vector<InitAnswers> answer_from_samples(const Robot& robot, const InitOptio
   set_target_frames(options.target_frame, given);
   given.length = options.length;
   given.carrier = options.touched_link;
+  given.at = touched_at(options);
   const std::optional<InitTarget> target = given_target(robot, options);
   if (target) given.target = *target;
   std::vector<InitAnswers> all = all_answers_from_samples(robot, samples, given);
@@ -395,6 +441,7 @@ std::vector<InitAnswers> answer(const Robot& robot, InitOptions& options) {
   answers.camera = first_of(robot, options.camera);
   answers.length = options.length;
   answers.carrier = options.touched_link;
+  answers.at = touched_at(options);
   answer_targets(robot, options, answers);
   warn_of_idle(options, answers.target, to_string(answers.target, answers.board));
   if (needs_arm(answers.target) && answers.arm.empty()) {
@@ -404,6 +451,7 @@ std::vector<InitAnswers> answer(const Robot& robot, InitOptions& options) {
                 choices(propose_arms(robot))});
     answers.arm = first_of(robot, options.arm);
   }
+  if (answers.target == InitTarget::grip) answer_other_hand(robot, options, answers);
   if (needs_camera(answers.target)) answer_camera(robot, options, answers);
   answer_names(robot, options, answers);
   return answers_of_all(
@@ -421,14 +469,16 @@ std::string call_of(const InitOptions& options) {
   for (const std::string& target : options.targets) {
     targets += (targets.empty() ? "" : ",") + target;
   }
+  for (const std::string& urdf : options.urdfs) call.add_option("--urdf", {urdf});
+  for (const std::string& stand : options.stands) call.add_option("--stands", {stand});
   for (const auto& [option, value] :
-       {std::pair("--urdf", options.urdf), std::pair("--target", targets),
-        std::pair("--arm", options.arm), std::pair("--camera", options.camera),
-        std::pair("--camera-type", options.camera_type),
+       {std::pair("--target", targets), std::pair("--arm", options.arm),
+        std::pair("--camera", options.camera), std::pair("--camera-type", options.camera_type),
         std::pair("--robot-camera-name", options.camera_name),
         std::pair("--target-frame", options.target_frame),
         std::pair("--tracker-frame", options.tracker_frame),
         std::pair("--touched-link", options.touched_link),
+        std::pair("--touched-at", fmt::format("{}", fmt::join(options.touched_at, ","))),
         std::pair("--length", options.length ? fmt::format("{}", *options.length) : ""),
         std::pair("--base", options.base)}) {
     if (!value.empty()) call.add_option(option, {value});
@@ -441,11 +491,14 @@ struct Configured {
   std::vector<InitAnswers> answers;  ///< of each camera and arm
   std::string text;                  ///< of the configuration
 };
-Configured configure(const Robot& robot, InitOptions options) {
+/// @param stands  joints on which several robots stand
+Configured configure(const Robot& robot, const std::vector<std::string>& stands,
+                     InitOptions options) {
   const InitOptions given = options;
   try {
     Configured all{
         options.from.empty() ? answer(robot, options) : answer_from_samples(robot, options), ""};
+    relate_stands(robot, stands, all.answers);
     all.text = initial_config(robot, all.answers);
     return all;
   } catch (const InputError& error) {
@@ -457,8 +510,7 @@ Configured configure(const Robot& robot, InitOptions options) {
 
 /// The capture.yaml beside the configuration, unless it is given.
 std::string capture_file(const InitOptions& options) {
-  if (!options.capture.empty()) return options.capture;
-  return (std::filesystem::path(options.output).parent_path() / "capture.yaml").string();
+  return options.capture.empty() ? beside_output(options, "capture.yaml") : options.capture;
 }
 
 /// Whether a file is one that a session or somebody has written; not init.
@@ -512,28 +564,112 @@ std::string joint_zeros_text(const Robot& robot, const std::string& urdf_text,
                        "'calibrate --offsets origin' moves the joints' origins instead\n");
 }
 
+/// NAME=FILE of a robot; the name is empty of a file alone.
+std::pair<std::string, std::string> named_urdf(const std::string& option) {
+  const std::size_t equals = option.find('=');
+  if (equals == std::string::npos || std::filesystem::exists(option)) return {"", option};
+  return {option.substr(0, equals), option.substr(equals + 1)};
+}
+
+/// Where a robot stands, of NAME=X,Y,Z,ROLL,PITCH,YAW.
+/// @throws InputError  if it is not that, or there is no such robot
+void set_stand(const std::string& option, std::vector<RobotPart>& robots) {
+  const std::size_t equals = std::min(option.find('='), option.size());
+  const std::string name = option.substr(0, equals);
+  const auto robot = std::find_if(robots.begin(), robots.end(),
+                                  [&](const RobotPart& one) { return one.name == name; });
+  if (robot == robots.end()) {
+    std::vector<std::string> names;
+    for (const RobotPart& one : robots) names.push_back(one.name);
+    throw InputError(
+        fmt::format("--stands: no robot '{}'{}; --urdf names {}", name, did_you_mean(name, names),
+                    names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+  }
+  std::vector<double> numbers;
+  for (const std::string& word : split(option.substr(std::min(equals + 1, option.size())))) {
+    std::istringstream in(word);
+    double number = 0.0;
+    if (in >> number && in.eof() && std::isfinite(number)) numbers.push_back(number);
+  }
+  if (numbers.size() != 6) {
+    throw InputError(fmt::format(
+        "--stands: '{}' is not NAME=X,Y,Z,ROLL,PITCH,YAW: six numbers, metres and radians",
+        option));
+  }
+  robot->xyz = {numbers[0], numbers[1], numbers[2]};
+  robot->rpy = {numbers[3], numbers[4], numbers[5]};
+}
+
+/// The robots of --urdf if there are several.
+/// @throws InputError  if they have no names
+std::vector<RobotPart> several_robots(const InitOptions& options) {
+  std::vector<RobotPart> robots;
+  if (options.urdfs.size() == 1 && named_urdf(options.urdfs.front()).first.empty()) {
+    if (!options.stands.empty()) set_stand(options.stands.front(), robots);
+    return robots;
+  }
+  const std::filesystem::path folder = folder_of(options.output);
+  for (const std::string& option : options.urdfs) {
+    const auto [name, file] = named_urdf(option);
+    if (name.empty() || options.urdfs.size() == 1) {
+      throw InputError(fmt::format(
+          "--urdf: '{}': several robots have a name each: --urdf left=FILE --urdf right=FILE",
+          option));
+    }
+    const std::filesystem::path own =
+        std::filesystem::path(folder_of(file)).lexically_proximate(folder);
+    robots.push_back({name, read_urdf_text(file), file, own == "." ? "" : own.string()});
+  }
+  for (const std::string& stand : options.stands) set_stand(stand, robots);
+  return robots;
+}
+
+/// The joints on which the robots of a URDF stand, if it was joined of several.
+std::vector<std::string> stands_of(const std::string& urdf_text, const std::string& urdf) {
+  std::vector<std::string> stands;
+  for (const std::string& robot : joined_robots(urdf_text, urdf))
+    stands.push_back(stand_joint(robot));
+  return stands;
+}
+
 }  // namespace
 
-int init(const InitOptions& options) {
-  if (!options.poses.empty()) return init_hand_eye(options);
-  if (!options.cameras.empty()) return init_cameras(options);
-  if (!options.corners.empty()) throw InputError("--corners goes with --poses or --cameras");
-  if (options.urdf.empty()) {
+int init(const InitOptions& given) {
+  if (!given.poses.empty()) return init_hand_eye(given);
+  if (!given.cameras.empty()) return init_cameras(given);
+  if (!given.corners.empty()) throw InputError("--corners goes with --poses or --cameras");
+  if (given.urdfs.empty()) {
     throw InputError(
         "give the robot: --urdf; or the poses of its flange: --poses; or the names of cameras "
         "alone: "
         "--cameras");
   }
-  const auto check = [&] { check_output(options.output, {options.urdf}, options.force); };
+  InitOptions options = given;
+  const std::vector<RobotPart> robots = several_robots(given);
+  options.urdf = robots.empty() ? given.urdfs.front() : beside_output(options, "robots.urdf");
+  std::vector<std::string> urdfs = {options.urdf};
+  for (const RobotPart& robot : robots) urdfs.push_back(robot.file);
+  const auto check = [&] {
+    check_output(options.output, urdfs, options.force);
+    if (robots.empty()) return;
+    check_output(options.urdf, {urdfs.begin() + 1, urdfs.end()}, options.force);
+  };
   check();  // before any question
   if (!options.capture.empty()) {
     check_output(options.capture, {options.urdf, options.output}, options.force);
   }
-  const std::string urdf_text = read_urdf_text(options.urdf);
+  const std::string urdf_text = robots.empty() ? read_urdf_text(options.urdf) : joined_urdf(robots);
   const Robot robot = parse_urdf(urdf_text, options.urdf);
-  const Configured made = configure(robot, options);
+  const Configured made = configure(robot, stands_of(urdf_text, options.urdf), options);
   check();  // the file may have appeared meanwhile
   const InitAnswers& answers = made.answers.front();
+  if (!robots.empty()) {
+    write_output(options.urdf, urdf_text);
+    const auto moving = std::find_if(robot.joints().begin(), robot.joints().end(),
+                                     [](const Joint& joint) { return moves(joint.type); });
+    say("wrote {}: the robots in link '{}'; joints are called as there, in samples, too{}\n",
+        options.urdf, kWorldLink, moving == robot.joints().end() ? "" : ": " + moving->name);
+  }
   write_output(options.output, made.text);
   if (made.text.find("sigma: ") != std::string::npos) {
     say("note: each sigma in {} is a guess of a residual, errors of the robot included; replace "

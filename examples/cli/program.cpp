@@ -334,7 +334,19 @@ void add_identify(CLI::App& command, IdentifyOptions& options) {
 
 void add_init(CLI::App& command, InitOptions& options) {
   CLI::Option* urdf =
-      command.add_option("--urdf", options.urdf, "the robot's URDF")->type_name("FILE");
+      command
+          .add_option("--urdf", options.urdfs,
+                      "the robot's URDF; of several robots each: --urdf left=FILE --urdf "
+                      "right=FILE, which are joined in robots.urdf")
+          ->allow_extra_args(false)
+          ->type_name("FILE");
+  command
+      .add_option("--stands", options.stands,
+                  "where one of several robots stands, roughly: right=X,Y,Z,ROLL,PITCH,YAW in "
+                  "metres and radians; by default it is found from nothing")
+      ->needs(urdf)
+      ->allow_extra_args(false)
+      ->type_name("NAME=POSE");
   CLI::Option* poses =
       command
           .add_option("--poses", options.poses,
@@ -396,7 +408,7 @@ void add_init(CLI::App& command, InitOptions& options) {
           "also goes with another: leds,ground; robot (its own surface); or what the tip touches, "
           "with "
           "nothing but joints recorded: point, tool, sockets, plane, line, sphere, bar, distance; "
-          "gravity (an accelerometer)")
+          "grip (one thing in both hands); gravity (an accelerometer)")
       ->delimiter(',')
       ->type_name(one_of("TARGET", target_words()));
   command
@@ -420,8 +432,16 @@ void add_init(CLI::App& command, InitOptions& options) {
   command
       .add_option(
           "--touched-link", options.touched_link,
-          "link that carries what the tip touches, such as the other hand; default: the base")
+          "link that carries what the tip touches; with grip: the other hand; default: the base, "
+          "or the other of two arms")
       ->type_name("LINK");
+  command
+      .add_option("--touched-at", options.touched_at,
+                  "where it is in that link, if that is known, metres: a bore of the robot's own "
+                  "body.  This place is then held: a first joint is found, too")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X,Y,Z");
   command
       .add_option("--arm", options.arm,
                   "link at the end of the arm; with target robot: frees the joints up to it")

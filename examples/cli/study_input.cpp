@@ -169,9 +169,10 @@ ParameterTable take_poses(const StudyFiles& files, int count, StudyInput& input)
   return made.values;
 }
 
-/// Takes generated poses in which a tip touches something.
-void take_touches(const StudyFiles& files, const ConfiguredTouch& touch, int count,
-                  StudyInput& input) {
+/// Takes generated poses in which a tip touches something, or both hands hold one thing.
+/// @returns  values by which the robot differs from the configuration
+ParameterTable take_touches(const StudyFiles& files, const ConfiguredTouch& touch, int count,
+                            StudyInput& input) {
   if (!files.pose_file.empty() || !files.have.empty()) {
     throw InputError(
         "--poses and --have are of robots that a camera sees; of a tip that touches something, "
@@ -179,11 +180,13 @@ void take_touches(const StudyFiles& files, const ConfiguredTouch& touch, int cou
         "what was recorded as --samples");
   }
   const std::uint64_t seed = static_cast<std::uint64_t>(std::max(1, files.seed));
-  input.samples =
+  TouchedSamples made =
       touched_samples(input.robot, touch, static_cast<std::size_t>(std::max(1, count)), seed);
+  input.samples = std::move(made.samples);
   for (const Sample& sample : input.samples) {
     input.poses.push_back({sample.joint_names, sample.joint_positions, {}, sample.source});
   }
+  return std::move(made.values);
 }
 
 /// Adds new poses before the recorded samples, which exist already: positions between those that were recorded, and
@@ -258,9 +261,10 @@ void set_up(const StudyFiles& files, StudyInput& input) {
   if (setup.free.empty()) throw InputError(files.config + ": no free parameter affects a residual");
   setup.samples = input.samples;
   const auto frames = compared_frames(*step.problem, input.samples);
-  if (!frames) throw InputError(files.config + ": nothing is compared whose pose could be judged");
-  setup.frame = frames->first;
-  setup.in = frames->second;
+  if (frames.empty())
+    throw InputError(files.config + ": nothing is compared whose pose could be judged");
+  setup.frame = frames.front().frame;
+  setup.in = frames.front().in;
   setup.noise = input.plan.noise;
   setup.errors = input.plan.errors;
   setup.ruined = input.plan.setup.faults.outliers;
@@ -367,7 +371,7 @@ std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
   std::optional<ParameterTable> recorded;
   input->is_touched = touch.has_value();
   if (touch) {
-    take_touches(files, *touch, poses, *input);
+    places = take_touches(files, *touch, poses, *input);
   } else if (files.samples.empty()) {
     places = take_poses(files, poses, *input);
   } else {

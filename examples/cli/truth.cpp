@@ -14,7 +14,7 @@ namespace kinecal::cli {
 std::string truth_text(const Robot& robot, const std::string& scene, const CalibratedRobot& all) {
   const AnyProblem& problem = *all.setup.calibration.steps.back().problem;
   const auto frames = compared_frames(problem, all.samples);
-  if (!frames) return {};
+  if (frames.empty()) return {};
   Diagnostics diagnostics;
   const SimulationPlan plan = read_simulation(robot, scene, "", 0, diagnostics);
   ParameterTable truth = all.result.table;
@@ -22,7 +22,7 @@ std::string truth_text(const Robot& robot, const std::string& scene, const Calib
     if (truth.find(parameter.name) >= 0) truth[parameter.name].value = parameter.value;
   }
   // Where a board is on its link, the simulation does not say by the names of parameters.
-  const FrameOnRobot gripper{frames->first.link}, camera{frames->second.link};
+  const FrameOnRobot gripper{frames.front().frame.link}, camera{frames.front().in.link};
   const Eigen::VectorXd of_truth = truth.values(), drawn = all.setup.calibration.table.values(),
                         found = all.result.table.values();
   const auto state = [&](const Eigen::VectorXd& values) {

@@ -37,6 +37,7 @@
 #include "kinecal/config/doubts/urdf_units.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/doubts/xacro_left.hpp"
+#include "kinecal/config/expected_joints.hpp"
 #include "kinecal/config/frame_gaps.hpp"
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/config/loss_names.hpp"

@@ -4,6 +4,7 @@
 
 #include "kinecal/report/chart_style.hpp"
 #include "kinecal/report/charts/arrows.hpp"
+#include "kinecal/report/charts/cameras.hpp"
 #include "kinecal/report/charts/chart.hpp"
 #include "kinecal/report/charts/charts.hpp"
 #include "kinecal/report/charts/convergence.hpp"

@@ -205,6 +205,7 @@ TEST_F(CellProgram, CalibratesAllCamerasAndTheBoardInOneSolve) {
     EXPECT_LE((found.pose.translation - truth.translation).norm(), 2e-3) << name;
     EXPECT_LE((found.pose.rotation - truth.rotation).norm(), 3e-3) << name;
     EXPECT_THAT(read("report.html"), HasSubstr("\"cameras\":")) << "in the 3-D view";
+    EXPECT_THAT(read("report.html"), HasSubstr("<title>" + name + ", sample ")) << "in the chart";
     EXPECT_THAT(read("report.html"), HasSubstr("\"name\":\"" + name + "\",\"link\":")) << name;
   }
   const YAML::Node report = YAML::Load(read("report.json"));
@@ -222,6 +223,22 @@ TEST_F(CellProgram, CalibratesAllCamerasAndTheBoardInOneSolve) {
   EXPECT_THAT(unknown.err,
               AllOf(HasSubstr("--between: 'rihgt'"), HasSubstr("did you mean 'right'")));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "other"));
+}
+
+TEST_F(CellProgram, ACameraInNoSampleIsAReasonOfTheVerdict) {
+  ASSERT_EQ(init("left,right,top", "left=left.csv,right=right.csv,top=top.csv").code, 0);
+  for (const char* file : {"hand_eye.urdf", "calibrate.yaml"}) {
+    std::filesystem::rename(folder_ / file, folder_ / (std::string("cell_") + file));
+  }
+  ASSERT_EQ(init("left,right", "left=left.csv,right=right.csv").code, 0);
+  ASSERT_EQ(kinecal("convert poses.csv samples.yaml --columns columns.yaml").code, 0);
+  const test::Outcome done = kinecal(
+      "calibrate --urdf cell_hand_eye.urdf --config cell_calibrate.yaml --samples samples.yaml "
+      "--camera left=left.yaml --camera right=right.yaml --output calibrated");
+  ASSERT_EQ(done.code, 0) << done.out << done.err;
+  EXPECT_THAT(done.out, AllOf(HasSubstr("verdict: use with care"),
+                              HasSubstr("model 'top': no sample has a sensor of that name"),
+                              HasSubstr("keep their initial values")));
 }
 
 TEST_F(CellProgram, NamesWhatIsWrongWithCamerasAndTablesInASentence) {

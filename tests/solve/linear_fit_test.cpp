@@ -34,9 +34,36 @@ TEST(LinearFit, RefitsAsASolverWouldWithoutSomeSamples) {
     if (block.sample % 3 == 0) weights.segment(block.first, block.size).setZero();
   }
   const Eigen::VectorXd values = scene.values();
-  const Refit refitted = refit(*evaluator, scene.span(values), fit, weights, 1.0, 1e-14);
+  const Eigen::VectorXd first = step_to_minimum(fit, weights);
+  const Refit refitted = refit(*evaluator, scene.span(values), fit, weights, first, 1.0, 1e-14);
   const Eigen::VectorXd expected = scene.values_without({0, 3, 6, 9});
   EXPECT_LT((refitted.values - expected).norm(), 1e-7 * expected.norm());
+}
+
+TEST(LinearFit, SumsAreThoseOfTheRowsThatAreLeft) {
+  test::NoisyScene scene(12);
+  scene.options.loss = {LossType::huber, 1.0};
+  scene.solve();
+  const auto evaluator = scene.solved().evaluator(scene.free());
+  const LinearFit fit = scene.linear(*evaluator);
+  EXPECT_EQ((fit.hessian - information(fit, fit.loss)).norm(), 0.0);
+  std::vector<int> part;
+  for (int s = 0; s < 12; ++s) part.push_back(s % 4 - 1);  // a quarter is in none
+  const std::vector<RowSums> without = sums_without_parts(fit, fit.loss, part);
+  ASSERT_EQ(without.size(), 3u);
+  for (int p = 0; p < 3; ++p) {
+    Eigen::VectorXd weights = fit.loss;
+    for (const RowBlock& block : fit.blocks) {
+      if (part[static_cast<std::size_t>(block.sample)] != p) continue;
+      weights.segment(block.first, block.size).setZero();
+    }
+    constexpr double kRounding = 1e-12;
+    const RowSums& of = without[static_cast<std::size_t>(p)];
+    const Eigen::MatrixXd expected = information(fit, weights, 0.0);
+    EXPECT_LT((of.information - expected).norm(), kRounding * expected.norm());
+    const Eigen::VectorXd step = step_to_minimum(fit, weights, 0.5);
+    EXPECT_LT((step_to_minimum(fit, of, 0.5) - step).norm(), 1e-9 * step.norm());
+  }
 }
 
 TEST(Spectrum, InvertsWhatIsNotSingularInAnyUnits) {

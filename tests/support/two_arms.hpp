@@ -1,10 +1,9 @@
-// Two arms of one torso: each hand carries a camera and a board, and its camera sees the other hand's board.
+// Two arms of one torso: each hand carries a camera and a board, and its camera sees the other hand's board; or the arms alone.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <fmt/format.h>
 
-#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -43,16 +42,20 @@ struct TwoArms {
     }
   }
 
-  [[nodiscard]] static std::string urdf() {
+  /// @param joints  of each arm: 6, or 7
+  [[nodiscard]] static std::string urdf(std::size_t joints = 6) {
     std::string text = "<robot name=\"two_arms\"><link name=\"torso\"/>\n";
     for (const std::string side : {"left", "right"}) {
       const double y = side == "left" ? 0.25 : -0.25;
-      const std::array<const char*, 6> axes = {"0 0 1", "0 1 0", "0 1 0",
-                                               "1 0 0", "0 1 0", "1 0 0"};
-      const std::array<double, 6> lengths = {0.0, 0.05, 0.3, 0.15, 0.15, 0.08};
+      std::vector<const char*> axes = {"0 0 1", "0 1 0", "0 1 0", "1 0 0", "0 1 0", "1 0 0"};
+      std::vector<double> lengths = {0.0, 0.05, 0.3, 0.15, 0.15, 0.08};
+      if (joints == 7) {  // one more turns the upper arm
+        axes.insert(axes.begin() + 2, "1 0 0");
+        lengths.insert(lengths.begin() + 2, 0.1);
+      }
       std::string parent = "torso";
-      for (std::size_t i = 0; i < 6; ++i) {
-        const std::string child = i == 5 ? side + "_hand" : fmt::format("{}_{}", side, i);
+      for (std::size_t i = 0; i < joints; ++i) {
+        const std::string child = i + 1 == joints ? side + "_hand" : fmt::format("{}_{}", side, i);
         text += fmt::format(
             "<link name=\"{0}\"/><joint name=\"{1}_joint_{2}\" type=\"revolute\"><parent "
             "link=\"{3}\"/><child link=\"{0}\"/><origin xyz=\"{4} {5} {6}\"/><axis "

@@ -202,7 +202,7 @@ TEST(Judge, AsksForSamplesOrForAnotherPrior) {
   Judged judged;
   ASSERT_TRUE(judged.assessments[0].pose.has_value());
   judged.assessments[0].pose->position = 0.008;
-  judged.assessments[0].elsewhere = 0.0;
+  judged.assessments[0].pose->elsewhere = 0.0;
   expect(judged.judgement(), Grade::use_with_care, "is known to 8 mm only; record more samples");
   EXPECT_EQ(judged.judgement().remedies.front().kind, Remedy::Kind::record);
   judged.assessments[0].pulls = {
@@ -365,6 +365,11 @@ TEST(Judge, WantsThePoseThatMattersToBeKnown) {
     judged.assessments[0].pose->position = metres;
     expect(judged.judgement(), verdict, "the position of 'hand' in 'camera_optical_frame'");
   }
+  Judged further;
+  further.assessments[0].further = {*further.assessments[0].pose};
+  further.assessments[0].further[0].in = "second_camera";
+  further.assessments[0].further[0].position = 0.008;
+  expect(further.judgement(), Grade::use_with_care, "the position of 'hand' in 'second_camera'");
   Judged judged;
   judged.assessments[0].pose->determined = false;
   expect(judged.judgement(), Grade::use_with_care, "do not determine");

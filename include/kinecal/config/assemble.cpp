@@ -18,6 +18,7 @@
 
 #include "kinecal/config/config.hpp"
 #include "kinecal/config/config_free.ipp"
+#include "kinecal/config/expected_joints.hpp"
 #include "kinecal/config/few_samples.ipp"
 #include "kinecal/config/frame_gaps.hpp"
 #include "kinecal/config/loss_names.hpp"
@@ -226,7 +227,18 @@ void add_block(AnyProblem& problem, const BlockConfig& block, bool exclusive,
 
 // The free parameters of a step that some residual depends on; the others are reported, by their cause.
 
-/// Warns of sensors that are in no sample, with what follows from that.
+/// True if a frame of the step keeps its pose.
+/// @param held  free parameters that keep their initial values
+[[nodiscard]] bool holds_frame(const StepConfig& step, const std::vector<std::string>& held) {
+  return std::any_of(held.begin(), held.end(), [&](const std::string& parameter) {
+    return std::any_of(step.free_frames.begin(), step.free_frames.end(), [&](const auto& frame) {
+      return is_frame_parameter(parameter, frame.name);
+    });
+  });
+}
+
+/// Warns of sensors that are in no sample, with what follows from that.  If a pose that was to be found stays what it was,
+/// it is a doubt: the result does not have it.
 /// @param held  free parameters that keep their initial values
 void report_missing(const MissingSensors& missing, const StepConfig& step,
                     const std::vector<std::string>& held, Diagnostics& diagnostics) {
@@ -241,7 +253,11 @@ void report_missing(const MissingSensors& missing, const StepConfig& step,
     text += fmt::format(", and {} {}", quoted_list(held, 3, "parameter"),
                         held.size() == 1 ? "keeps its initial value" : "keep their initial values");
   }
-  diagnostics.warning(missing.models.front()->place, text);
+  const SourceLocation& place = missing.models.front()->place;
+  const bool is_surface =
+      missing.models.front()->is_surface;  // the camera that sees it is not associated
+  const bool is_doubt = !is_surface && holds_frame(step, held);
+  is_doubt ? diagnostics.doubt(place, text) : diagnostics.warning(place, text);
 }
 
 /// Warns of parameters of one line of the file that have no residual.
@@ -451,7 +467,7 @@ std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> sample
   constexpr std::size_t kReported = 5;  // the first few show what is wrong
   std::size_t others = 0;
   struct Reason {
-    std::string text, first;  // without and with the place of a sample
+    std::string text, first, expected;  // without and with the place of a sample; expected_joints()
     std::size_t count = 1;
   };
   std::vector<Reason> refused;
@@ -468,7 +484,7 @@ std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> sample
       if (known != refused.end()) {
         ++known->count;
       } else if (refused.size() < kReported) {
-        refused.push_back({reason, what});
+        refused.push_back({reason, what, expected_joints(problem.robot(), sample.joint_names)});
       } else {
         ++others;
       }
@@ -479,7 +495,7 @@ std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> sample
     diagnostics.errors.push_back(
         reason.first +
         (reason.count > 1 ? " (and in " + counted(reason.count - 1, "more sample") + ")" : "") +
-        (lacks_camera ? "; record it, or give its file: --camera NAME=FILE" : ""));
+        (lacks_camera ? "; record it, or give its file: --camera NAME=FILE" : reason.expected));
   }
   if (others > 0) {
     diagnostics.errors.push_back(

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <future>
 #include <map>
 #include <set>
 #include <span>
@@ -302,10 +303,16 @@ void explain(CalibratedRobot& calibrated, const CalibrationOptions& options) {
   }
   if (!frees_some) return;
   const bool is_explained = findings.judgement.causes > causes;
-  judge_scales(input, findings);
+  std::future<WouldHelp> beside;
   if (!calibrated.robot_search) {  // else it is freed already
-    const WouldHelp help = would_help(*setup.config, setup.robot, calibrated.samples,
-                                      setup.calibration, findings.result);
+    beside = std::async(std::launch::async, [&] {
+      return would_help(*setup.config, setup.robot, calibrated.samples, setup.calibration,
+                        findings.result);
+    });
+  }
+  judge_scales(input, findings);
+  if (beside.valid()) {
+    const WouldHelp help = beside.get();
     findings.helps = help.sentences;
     findings.helps_leave = help.left;
     if (!findings.assessments.empty() && !is_explained) {

@@ -144,6 +144,34 @@ namespace {
       free, needed, numbers);
 }
 
+/// Why a pose is not known as well as it should be; empty if it is.
+/// @param pose  of an error block
+[[nodiscard]] std::string pose_not_known(const Accuracy& wanted, const SessionResult& result,
+                                         const PoseUncertainty& pose,
+                                         std::span<const Sample> ahead) {
+  const auto on_robot = [](const std::string& name, const std::string& link) {
+    return FrameOnRobot{link, name == link ? "" : name};
+  };
+  const FrameOnRobot in = on_robot(pose.in, pose.in_link);
+  const FrameOnRobot frame =
+      wanted.frame.empty() ? on_robot(pose.frame, pose.link) : FrameOnRobot{wanted.frame};
+  const auto known_at = [&](std::span<const Sample> poses) {
+    return pose_at(result.problem, result.step, result.values, poses, frame, in);
+  };
+  const double times = times_held_out(result.step);
+  std::string why = not_known(wanted, known_at(result.samples), times, "at the captured poses");
+  if (why.empty()) {  // only then: held-out samples are included
+    why = not_known(
+        wanted,
+        pose_held_out(result.problem, result.step, result.values, result.samples, frame, in), 1.0,
+        "at each pose by the samples of the others");
+  }
+  if (why.empty() && !ahead.empty()) {
+    why = not_known(wanted, known_at(ahead), times, "at the poses that are left");
+  }
+  return why;
+}
+
 /// Which parameters the remaining poses would determine; empty if none.  Without such poses, a
 /// person moves the robot: which are hardly determined.
 [[nodiscard]] std::string still_open(const SessionResult& result, std::span<const Sample> ahead) {
@@ -165,29 +193,13 @@ namespace {
 
 std::string why_go_on(const Accuracy& wanted, const SessionResult& result,
                       std::span<const Sample> ahead) {
-  const Assessment& step = result.step;  // clang 14 captures no structured binding
+  const Assessment& step = result.step;
   if (std::string few = detail::too_few(result); !few.empty()) return few;
   if (std::string why = detail::not_usable(result.judgement); !why.empty()) return why;
   if (!step.pose) return "no error block compares two frames";
-  const auto on_robot = [](const std::string& name, const std::string& link) {
-    return FrameOnRobot{link, name == link ? "" : name};
-  };
-  const FrameOnRobot in = on_robot(step.pose->in, step.pose->in_link);
-  const FrameOnRobot frame = wanted.frame.empty() ? on_robot(step.pose->frame, step.pose->link)
-                                                  : FrameOnRobot{wanted.frame};
-  const auto known_at = [&](std::span<const Sample> poses) {
-    return pose_at(result.problem, step, result.values, poses, frame, in);
-  };
-  const double times = detail::times_held_out(step);
-  std::string why =
-      detail::not_known(wanted, known_at(result.samples), times, "at the captured poses");
-  if (why.empty()) {  // only then: held-out samples are included
-    why = detail::not_known(
-        wanted, pose_held_out(result.problem, step, result.values, result.samples, frame, in), 1.0,
-        "at each pose by the samples of the others");
-  }
-  if (why.empty() && !ahead.empty()) {
-    why = detail::not_known(wanted, known_at(ahead), times, "at the poses that are left");
+  std::string why = detail::pose_not_known(wanted, result, *step.pose, ahead);
+  for (const PoseUncertainty& pose : step.further) {
+    if (why.empty()) why = detail::pose_not_known(wanted, result, pose, ahead);
   }
   return why.empty() ? detail::still_open(result, ahead) : why;
 }

@@ -12,7 +12,6 @@
 #include "kinecal/procedure/surface_rounds.hpp"
 #include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/text/nearest_name.hpp"
-#include "kinecal/trust/uncertainty/compared_frames.hpp"
 #include "kinecal/trust/uncertainty/pose_elsewhere.hpp"
 
 namespace kinecal {
@@ -57,16 +56,23 @@ bool SessionFollower::start() {
   const CalibrationResult result = calibrate(calibration, {}, solving);
   if (!result.converged) return false;
   const CalibrationStep& step = calibration.steps.back();
-  frames_ = compared_frames(*step.problem, samples_);
-  if (!frames_) return false;
-  if (!frame_.empty()) frames_->first = {frame_};
+  if (!find_frames(*step.problem, samples_)) return false;
   const std::shared_ptr<const AnyProblem> problem = step.problem->without_samples();
   const auto make = [problem] { return problem->without_samples(); };
   const Eigen::VectorXd values = result.table.values();
   online_.emplace(make, step.free,
                   std::span<const double>(values.data(), static_cast<std::size_t>(values.size())),
-                  frames_->first, frames_->second);
+                  frames_->frame, frames_->in);
   return true;
+}
+
+/// Finds the frames whose pose the session waits for.
+/// @returns  false if nothing is compared
+bool SessionFollower::find_frames(const AnyProblem& problem, std::span<const Sample> samples) {
+  const std::vector<ComparedFrames> all = compared_frames(problem, samples);
+  frames_ = all.empty() ? std::nullopt : std::optional(all.front());
+  if (frames_ && !frame_.empty()) frames_->frame = {frame_};
+  return frames_.has_value();
 }
 
 OnlineState SessionFollower::start_again(std::span<const Sample> ahead) {
@@ -103,17 +109,14 @@ void SessionFollower::calibrate_surface(std::span<const Sample> ahead, FollowedS
   }
   if (!all.result.converged || all.assessments.empty()) return;
   const AnyProblem& problem = *all.setup.calibration.steps.back().problem;
-  frames_ = compared_frames(problem, all.samples);
-  if (!frames_) return;
-  if (!frame_.empty()) frames_->first = {frame_};
+  if (!find_frames(problem, all.samples)) return;
   const Assessment& step = all.assessments.back();
   const Eigen::VectorXd table = all.result.table.values();
   const ParameterValues values(table.data(), static_cast<std::size_t>(table.size()));
   online.known = all.is_usable();
   for (const std::span<const Sample> poses : {std::span<const Sample>(all.samples), ahead}) {
     if (poses.empty()) continue;
-    const PoseUncertainty pose =
-        pose_at(problem, step, values, poses, frames_->first, frames_->second);
+    const PoseUncertainty pose = pose_at(problem, step, values, poses, frames_->frame, frames_->in);
     online.known = online.known && pose.determined;
     online.position = std::max(online.position, pose.position);
     online.rotation = std::max(online.rotation, pose.rotation);
@@ -187,7 +190,7 @@ Sample at_pose(const CapturePose& pose, const Sample& sample) {
 
 std::pair<std::string, std::string> SessionFollower::frames() const {
   if (!frames_) return {};
-  return {frames_->first.name(), frames_->second.name()};
+  return {frames_->frame.name(), frames_->in.name()};
 }
 
 bool Accuracy::reached(const OnlineState& state) const {

@@ -23,6 +23,7 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/procedure/calibrate_robot.hpp"
 #include "kinecal/trust/online.hpp"
+#include "kinecal/trust/uncertainty/compared_frames.hpp"
 
 namespace kinecal {
 
@@ -74,6 +75,7 @@ class SessionFollower {
   [[nodiscard]] Sample at_rest(Sample sample) const;
   void check(const Sample& sample) const;
   [[nodiscard]] bool start();
+  [[nodiscard]] bool find_frames(const AnyProblem& problem, std::span<const Sample> samples);
   [[nodiscard]] OnlineState start_again(std::span<const Sample> ahead);
   void calibrate_surface(std::span<const Sample> ahead, FollowedState& followed);
 
@@ -85,8 +87,8 @@ class SessionFollower {
   std::unique_ptr<AnyProblem> problem_;  ///< of the last step, without samples
   std::vector<Sample> samples_;          ///< all of the session that suit the configuration
   std::optional<OnlineCalibration> online_;
-  std::optional<std::pair<FrameOnRobot, FrameOnRobot>> frames_;
-  int misfits_ = 0;  ///< samples in a row that do not fit
+  std::optional<ComparedFrames> frames_;  ///< whose pose it waits for
+  int misfits_ = 0;                       ///< samples in a row that do not fit
   std::set<int>
       left_out_{};  ///< numbers of samples that calibrations of a surface left out, from 1
 };

@@ -157,7 +157,7 @@ template <class Number>
   return {{"sample", sample.number}, {"source", sample.source}, {"why", sample.why}};
 }
 
-[[nodiscard]] inline Json json(const PoseUncertainty& pose, double elsewhere) {
+[[nodiscard]] inline Json json(const PoseUncertainty& pose) {
   return {{"frame", pose.frame},
           {"link", pose.link},
           {"in", pose.in},
@@ -166,7 +166,7 @@ template <class Number>
           {"rotation", pose.rotation},
           {"worst_position", pose.worst_position},
           {"worst_rotation", pose.worst_rotation},
-          {"position_elsewhere", elsewhere > 0.0 ? Json(elsewhere) : Json()},
+          {"position_elsewhere", pose.elsewhere > 0.0 ? Json(pose.elsewhere) : Json()},
           {"determined", pose.determined}};
 }
 
@@ -260,8 +260,8 @@ std::string json_report(const Findings& findings, std::span<const OutputFile> fi
       {"design_effect", last.uncertainty.design_effect},
       {"common_noise", detail::json(last.common)},
       {"parameters", json_list(result.calibrated, parameter)},
-      {"pose", last.pose ? detail::json(*last.pose, last.elsewhere) : detail::Json()},
-      {"between", json_list(last.between, [](const auto& of) { return detail::json(of, 0.0); })},
+      {"pose", last.pose ? detail::json(*last.pose) : detail::Json()},
+      {"between", json_list(last.between, [](const auto& of) { return detail::json(of); })},
       {"cameras", detail::json_cameras(last)},
       {"observability", json_list(findings.assessments, observability)},
       {"bad_samples", detail::json_captures(findings, last)},

@@ -109,14 +109,18 @@ namespace kinecal::detail {
   }
   for (const Assessment& step : findings.assessments) {
     if (!step.pose || &step != &findings.assessments.back()) continue;
-    const PoseUncertainty& pose = *step.pose;
-    text +=
-        fmt::format("\nPose of '{}' in '{}': +- {}, {}; at the worst of these samples {}, {}\n",
-                    pose.frame, pose.in, reading(pose.position, "m"), reading(pose.rotation, "rad"),
-                    reading(pose.worst_position, "m"), reading(pose.worst_rotation, "rad"));
-    if (step.elsewhere > 0.0) {
-      text += fmt::format("  over the limits of the joints: {} (median)\n",
-                          reading(step.elsewhere, "m"));
+    std::vector<PoseUncertainty> poses = step.further;
+    poses.insert(poses.begin(), *step.pose);
+    text += "\n";
+    for (const PoseUncertainty& pose : poses) {
+      text += fmt::format("Pose of '{}' in '{}': +- {}, {}; at the worst of these samples {}, {}\n",
+                          pose.frame, pose.in, reading(pose.position, "m"),
+                          reading(pose.rotation, "rad"), reading(pose.worst_position, "m"),
+                          reading(pose.worst_rotation, "rad"));
+      if (pose.elsewhere > 0.0) {
+        text += fmt::format("  over the limits of the joints: {} (median)\n",
+                            reading(pose.elsewhere, "m"));
+      }
     }
   }
   if (findings.assessments.empty()) return text;

@@ -89,7 +89,8 @@ void add_outline(const AnyProblem& problem, const FeaturePlaces& places, const T
 }
 
 /// An error block without features.
-[[nodiscard]] ReportedBlock reported_block(const Term& term, const Findings& findings) {
+[[nodiscard]] ReportedBlock reported_block(const AnyProblem& problem, const Term& term,
+                                           const Findings& findings) {
   ReportedBlock block{.name = term.name,
                       .type = term.options.type,
                       .unit = term.options.unit,
@@ -98,6 +99,10 @@ void add_outline(const AnyProblem& problem, const FeaturePlaces& places, const T
     block.is_plane = block.is_plane || quantity == Quantity::plane;
   }
   block.is_plane = block.is_plane || block.type == "chain3d_to_plane";
+  for (const int s : term.sensors) {
+    const MountedSensor& sensor = problem.sensors()[static_cast<std::size_t>(s)];
+    if (sensor.sensor().is_camera()) block.cameras.push_back(sensor.mount().name);
+  }
   if (const auto* noise = of_block(findings.assessments, &Assessment::noise, block.name)) {
     block.sigma = noise->freedom > 0.0 ? noise->sigma : 0.0;
     block.sigma_given = noise->given;
@@ -118,7 +123,7 @@ void add_outline(const AnyProblem& problem, const FeaturePlaces& places, const T
                                                          std::size_t used) {
   std::vector<ReportedBlock> blocks;
   for (int t = 0; t < problem.num_terms(); ++t) {
-    blocks.push_back(reported_block(problem.term(t), findings));
+    blocks.push_back(reported_block(problem, problem.term(t), findings));
   }
   std::map<std::pair<int, int>, std::vector<double>> before;  // by term and sample
   (void)evaluate(problem, initial, nullptr, [&](int t, int sample, const TermResiduals& residuals) {

@@ -62,6 +62,7 @@ struct ReportedBlock {
   std::array<double, 2> image = {
       0.0, 0.0};  ///< width and height of the camera's image, pixels; 0: unknown
   std::vector<ReportedFeature> features = {};  ///< in the order of samples, also of those left out
+  std::vector<std::string> cameras = {};       ///< names of those whose features it compares
 };
 
 /// A sample, used or left out.

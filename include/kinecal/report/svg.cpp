@@ -52,11 +52,11 @@ void Drawing::line(ChartPoint a, ChartPoint b, const char* classes) {
 }
 
 void Drawing::rectangle(ChartPoint corner, double width, double height, const char* classes,
-                        std::string_view title) {
+                        std::string_view title, int sample) {
   marks_ += fmt::format(R"(<rect class="{}" x="{}" y="{}" width="{}" height="{}")", classes,
                         coordinate(corner[0]), coordinate(corner[1]),
                         coordinate(std::max(0.0, width)), coordinate(std::max(0.0, height)));
-  close(0, title, "rect");
+  close(sample, title, "rect");
 }
 
 void Drawing::circle(ChartPoint center, double radius, const char* classes, int sample,

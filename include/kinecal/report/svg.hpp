@@ -41,7 +41,7 @@ class Drawing {
 
   void line(ChartPoint a, ChartPoint b, const char* classes);
   void rectangle(ChartPoint corner, double width, double height, const char* classes,
-                 std::string_view title = {});
+                 std::string_view title = {}, int sample = 0);
   void circle(ChartPoint center, double radius, const char* classes, int sample = 0,
               std::string_view title = {});
   /// A line through places; places that are not finite interrupt it.

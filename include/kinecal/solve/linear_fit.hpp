@@ -51,6 +51,7 @@ struct LinearFit {
   Coordinates coordinates;         ///< the variables of the derivatives
   Eigen::VectorXd prior_gradient;  ///< (coordinates) of all priors
   Eigen::MatrixXd prior_hessian;   ///< (coordinates x coordinates) of all priors
+  Eigen::MatrixXd hessian;         ///< information() with the losses; empty without derivatives
 
   /// Number of coordinates.
   [[nodiscard]] Eigen::Index size() const { return coordinates.basis.cols(); }
@@ -75,13 +76,47 @@ namespace detail {
 [[nodiscard]] LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues values,
                                    const Coordinates& coordinates, bool derivatives = true);
 
+/// linear_fit() without its Hessian.
+[[nodiscard]] LinearFit linear_rows(AnyEvaluator& evaluator, ParameterValues values,
+                                    const Coordinates& coordinates, bool derivatives = true);
+
 /// J^T J of rows with weights, priors included.
 /// @param weights  (rows) of squared residuals
 /// @param priors   factor of the priors
 [[nodiscard]] Eigen::MatrixXd information(const LinearFit& fit, const Eigen::VectorXd& weights,
                                           double priors = 1.0);
 
+/// Sums of weighted rows, without priors.
+struct RowSums {
+  Eigen::MatrixXd information;  ///< (coordinates x coordinates) J^T W J
+  Eigen::VectorXd gradient;     ///< (coordinates) J^T W r
+
+  explicit RowSums(Eigen::Index coordinates);  ///< all zero
+  RowSums& operator+=(const RowSums& other);   ///< adds those of other rows
+};
+
+/// The sums of the rows of a block.
+/// @param weights   (rows of the fit) of squared residuals
+/// @param residual  (rows of the fit)
+[[nodiscard]] RowSums row_sums(const LinearFit& fit, const RowBlock& block,
+                               const Eigen::VectorXd& weights, const Eigen::VectorXd& residual);
+
+/// The sums of all rows but those of a part of the samples, for each part.  Nothing is subtracted, so that what only a
+/// part determines is zero without it.
+/// @param weights  (rows) of squared residuals
+/// @param part     of each sample, from 0; negative: in none
+[[nodiscard]] std::vector<RowSums> sums_without_parts(const LinearFit& fit,
+                                                      const Eigen::VectorXd& weights,
+                                                      const std::vector<int>& part);
+
 /// The step from the linearization to the minimum of weighted squared rows: one Gauss-Newton step.
+/// @param sums    of the weighted rows
+/// @param priors  factor of the priors
+/// @returns  (coordinates)
+[[nodiscard]] Eigen::VectorXd step_to_minimum(const LinearFit& fit, const RowSums& sums,
+                                              double priors = 1.0);
+
+/// The same of all rows.
 /// @param weights  (rows) of squared residuals
 /// @param priors   factor of the priors
 /// @returns  (coordinates)
@@ -103,11 +138,12 @@ struct Refit {
 /// the cost falls.  One step is enough unless some directions are poorly determined.
 /// @param values   where `fit` was linearized
 /// @param weights  (rows) of squared residuals
+/// @param first    step_to_minimum() of these weights and priors
 /// @param priors   factor of the priors
 /// @param settled  stops after a step that lowers the cost by less than this fraction
 [[nodiscard]] Refit refit(AnyEvaluator& evaluator, ParameterValues values, const LinearFit& fit,
-                          const Eigen::VectorXd& weights, double priors = 1.0,
-                          double settled = 1e-4);
+                          const Eigen::VectorXd& weights, const Eigen::VectorXd& first,
+                          double priors = 1.0, double settled = 1e-4);
 
 }  // namespace kinecal
 

@@ -57,8 +57,8 @@ KINECAL_INLINE Coordinates determined_coordinates(const AnyProblem& problem, con
   return detail::coordinates_of(detail::sample_information(problem, free, values));
 }
 
-KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues values,
-                                    const Coordinates& coordinates, bool derivatives) {
+KINECAL_INLINE LinearFit linear_rows(AnyEvaluator& evaluator, ParameterValues values,
+                                     const Coordinates& coordinates, bool derivatives) {
   LinearFit fit;
   fit.coordinates = coordinates;
   const Eigen::MatrixXd& basis = coordinates.basis;
@@ -79,8 +79,10 @@ KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues val
     if (from.used.size() > 0) fit.used.segment(first, block.size) = from.used;
     if (derivatives) {
       const Eigen::VectorXd weights = term.weight * from.factor;
-      fit.jacobian.middleRows(first, block.size).noalias() =
-          weights.asDiagonal() * (from.jacobian * basis);
+      const std::vector<int> columns = detail::nonzero_columns(from.jacobian);
+      const Eigen::MatrixXd weighted = weights.asDiagonal() * from.jacobian(Eigen::all, columns);
+      const Eigen::MatrixXd by = basis(columns, Eigen::all);
+      fit.jacobian.middleRows(first, block.size).noalias() = weighted * by;
     }
     block.first = first;
     first += block.size;
@@ -92,20 +94,87 @@ KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues val
   return fit;
 }
 
+KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues values,
+                                    const Coordinates& coordinates, bool derivatives) {
+  LinearFit fit = linear_rows(evaluator, values, coordinates, derivatives);
+  if (derivatives) fit.hessian = information(fit, fit.loss);
+  return fit;
+}
+
 KINECAL_INLINE Eigen::MatrixXd information(const LinearFit& fit, const Eigen::VectorXd& weights,
                                            double priors) {
+  constexpr Eigen::Index kAtOnce = 256;  // weighted rows that stay in the cache
   Eigen::MatrixXd sum = priors * fit.prior_hessian;
-  const LinearFit::RowMajor weighted = weights.cwiseSqrt().asDiagonal() * fit.jacobian;
-  sum.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+  LinearFit::RowMajor weighted;
+  for (Eigen::Index first = 0; first < weights.size(); first += kAtOnce) {
+    const Eigen::Index size = std::min(kAtOnce, weights.size() - first);
+    weighted = weights.segment(first, size).cwiseSqrt().asDiagonal() *
+               fit.jacobian.middleRows(first, size);
+    sum.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+  }
   return sum.selfadjointView<Eigen::Lower>();
+}
+
+KINECAL_INLINE RowSums::RowSums(Eigen::Index coordinates)
+    : information(Eigen::MatrixXd::Zero(coordinates, coordinates)),
+      gradient(Eigen::VectorXd::Zero(coordinates)) {}
+
+KINECAL_INLINE RowSums& RowSums::operator+=(const RowSums& other) {
+  information += other.information;
+  gradient += other.gradient;
+  return *this;
+}
+
+KINECAL_INLINE RowSums row_sums(const LinearFit& fit, const RowBlock& block,
+                                const Eigen::VectorXd& weights, const Eigen::VectorXd& residual) {
+  const auto rows = fit.jacobian.middleRows(block.first, block.size);
+  const auto of_rows = weights.segment(block.first, block.size);
+  RowSums sums(fit.size());
+  const LinearFit::RowMajor weighted = of_rows.cwiseSqrt().asDiagonal() * rows;
+  Eigen::MatrixXd lower = sums.information;
+  lower.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+  sums.information = lower.selfadjointView<Eigen::Lower>();
+  sums.gradient.noalias() =
+      rows.transpose() * of_rows.cwiseProduct(residual.segment(block.first, block.size));
+  return sums;
+}
+
+KINECAL_INLINE std::vector<RowSums> sums_without_parts(const LinearFit& fit,
+                                                       const Eigen::VectorXd& weights,
+                                                       const std::vector<int>& part) {
+  const int last = part.empty() ? -1 : *std::max_element(part.begin(), part.end());
+  const auto parts = static_cast<std::size_t>(last + 1);
+  std::vector<RowSums> own(parts, RowSums(fit.size()));
+  RowSums before(fit.size());  // of rows in no part, then of the parts before one, too
+  for (const RowBlock& block : fit.blocks) {
+    const int of = part[static_cast<std::size_t>(block.sample)];
+    RowSums& sums = of < 0 ? before : own[static_cast<std::size_t>(of)];
+    sums += row_sums(fit, block, weights, fit.residual);
+  }
+  std::vector<RowSums> without(parts, RowSums(fit.size()));
+  for (std::size_t p = parts; p-- > 1;) {  // of the parts after one
+    without[p - 1] = without[p];
+    without[p - 1] += own[p];
+  }
+  for (std::size_t p = 0; p < parts; ++p) {
+    without[p] += before;
+    before += own[p];
+  }
+  return without;
+}
+
+KINECAL_INLINE Eigen::VectorXd step_to_minimum(const LinearFit& fit, const RowSums& sums,
+                                               double priors) {
+  const detail::Spectrum spectrum(sums.information + priors * fit.prior_hessian);
+  return -spectrum.pseudo_inverse() * (sums.gradient + priors * fit.prior_gradient);
 }
 
 KINECAL_INLINE Eigen::VectorXd step_to_minimum(const LinearFit& fit, const Eigen::VectorXd& weights,
                                                double priors) {
-  const Eigen::VectorXd gradient =
-      fit.jacobian.transpose() * weights.cwiseProduct(fit.residual) + priors * fit.prior_gradient;
-  const detail::Spectrum spectrum(information(fit, weights, priors));
-  return -spectrum.pseudo_inverse() * gradient;
+  RowSums sums(fit.size());
+  sums.information = information(fit, weights, 0.0);
+  sums.gradient = fit.jacobian.transpose() * weights.cwiseProduct(fit.residual);
+  return step_to_minimum(fit, sums, priors);
 }
 
 KINECAL_INLINE Eigen::VectorXd stepped(const LinearFit& fit, const FreeSet& free,
@@ -135,7 +204,7 @@ inline bool descend(AnyEvaluator& evaluator, const LinearFit& fit, const Eigen::
   for (int i = 0; i < kHalvings; ++i, step *= 0.5) {
     const Eigen::VectorXd values = stepped(fit, evaluator.free(), numbers(at.values), step);
     try {
-      const LinearFit there = linear_fit(evaluator, numbers(values), fit.coordinates, false);
+      const LinearFit there = linear_rows(evaluator, numbers(values), fit.coordinates, false);
       const double after = cost(there, values);
       if (!(after <= before)) continue;
       at = {values, there.residual};
@@ -149,9 +218,9 @@ inline bool descend(AnyEvaluator& evaluator, const LinearFit& fit, const Eigen::
 }  // namespace detail
 
 KINECAL_INLINE Refit refit(AnyEvaluator& evaluator, ParameterValues values, const LinearFit& fit,
-                           const Eigen::VectorXd& weights, double priors, double settled) {
+                           const Eigen::VectorXd& weights, const Eigen::VectorXd& first,
+                           double priors, double settled) {
   Refit at{Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values)), fit.residual};
-  const Eigen::VectorXd first = step_to_minimum(fit, weights, priors);
   bool falls = detail::descend(evaluator, fit, weights, priors, settled, first, at);
   constexpr int kSteps = 10;
   for (int i = 1; falls && i < kSteps; ++i) {
@@ -159,7 +228,8 @@ KINECAL_INLINE Refit refit(AnyEvaluator& evaluator, ParameterValues values, cons
     const Eigen::VectorXd promised = fit.residual + fit.jacobian * first;
     const double off = (promised - at.residual).squaredNorm();
     if (i == 1 && off < settled * at.residual.squaredNorm()) break;
-    const LinearFit next = linear_fit(evaluator, detail::numbers(at.values), fit.coordinates);
+    const LinearFit next =
+        linear_rows(evaluator, detail::numbers(at.values), fit.coordinates, true);
     falls = detail::descend(evaluator, next, weights, priors, settled,
                             step_to_minimum(next, weights, priors), at);
   }

@@ -57,7 +57,8 @@ inline double hold_once(AnyEvaluator& evaluator, const Eigen::VectorXd& start,
   by = determined_coordinates(evaluator.problem(), free, numbers(values));
   const LinearFit fit = linear_fit(evaluator, numbers(values), by);
   constexpr double kSettled = 1e-15;
-  values = refit(evaluator, numbers(values), fit, fit.loss, 1.0, kSettled).values;
+  const Eigen::VectorXd first = step_to_minimum(fit, fit.loss);
+  values = refit(evaluator, numbers(values), fit, fit.loss, first, 1.0, kSettled).values;
   return drift.norm();
 }
 

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/linkage.hpp"
@@ -17,6 +18,9 @@ namespace kinecal::detail {
 /// Singular values below this fraction of the largest one count as zero; those of 1e-8 and below
 /// are rounding, because they are roots of eigenvalues of J^T J.
 inline constexpr double kUnobservable = 1e-6;
+
+/// The columns of some rows that are not zero: an error block knows the parameters of its own sensors only.
+[[nodiscard]] std::vector<int> nonzero_columns(const Eigen::MatrixXd& rows);
 
 /// J^T J of the error-free problem, weighted, without priors.
 [[nodiscard]] Eigen::MatrixXd error_free_information(const AnyProblem& problem, const FreeSet& free,

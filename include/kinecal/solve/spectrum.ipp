@@ -11,13 +11,23 @@
 
 namespace kinecal::detail {
 
+KINECAL_INLINE std::vector<int> nonzero_columns(const Eigen::MatrixXd& rows) {
+  std::vector<int> columns;
+  for (int c = 0; c < rows.cols(); ++c) {
+    if (!rows.col(c).isZero(0.0)) columns.push_back(c);
+  }
+  return columns;
+}
+
 KINECAL_INLINE Eigen::MatrixXd error_free_information(const AnyProblem& problem,
                                                       const FreeSet& free, ParameterValues values) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(free.size(), free.size());
   const auto add = [&](int t, int, const TermResiduals& out) {
     const Eigen::VectorXd weights = problem.term(t).weight * out.factor;
-    const Eigen::MatrixXd weighted = weights.asDiagonal() * out.jacobian;
-    sum.noalias() += weighted.transpose() * weighted;
+    const std::vector<int> columns = nonzero_columns(out.jacobian);
+    const Eigen::MatrixXd weighted = weights.asDiagonal() * out.jacobian(Eigen::all, columns);
+    const Eigen::MatrixXd squared = weighted.transpose() * weighted;
+    sum(columns, columns) += squared;
   };
   (void)evaluate(problem, values, &free, add, Linearization::error_free);
   return sum;

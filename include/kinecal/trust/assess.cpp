@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "kinecal/geometry/median.hpp"
+#include "kinecal/solve/determined_spectrum.hpp"
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/captures/ruined.hpp"
 #include "kinecal/trust/inside_bounds.ipp"
@@ -96,12 +98,12 @@ namespace {
   return all;
 }
 
-/// The median +- of the pose in question over the limits of the joints; 0 if it is not known there.
+/// The median +- of a pose over the limits of the joints; 0 if it is not known there.
 [[nodiscard]] double deviation_elsewhere(const AnyProblem& problem, const Assessment& step,
-                                         ParameterValues values) {
+                                         const PoseUncertainty& pose, ParameterValues values) {
   constexpr int kPoses = 64;
   std::vector<double> deviations;
-  for (const KnownPoint& point : workspace_map(problem, step, values, kPoses)) {
+  for (const KnownPoint& point : workspace_map(problem, step, pose, values, kPoses)) {
     deviations.push_back(point.deviation);
   }
   return deviations.empty() ? 0.0 : median_of(std::move(deviations));
@@ -173,12 +175,15 @@ std::optional<double> Assessment::deviation(int parameter) const {
 Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValues values,
                   std::span<const Sample> samples, const AssessOptions& options) {
   Assessment found;
-  found.observability = observability(problem, free, values);
+  const detail::SampleInformation of_free = detail::sample_information(problem, free, values);
+  if (free.size() > 0) found.observability = detail::observability_of(problem, free, of_free);
   const FreeSet inside = detail::inside_bounds(problem, free, values, found.at_bound);
   found.parameters = inside.parameters();
   const auto evaluator = problem.evaluator(inside, 1);
   const LinearFit fit =
-      linear_fit(*evaluator, values, determined_coordinates(problem, inside, values));
+      linear_fit(*evaluator, values,
+                 inside.size() == free.size() ? detail::coordinates_of(of_free)
+                                              : determined_coordinates(problem, inside, values));
   found.rows = fit.residual.size();
   found.used = fit.used.sum();
   found.samples = problem.num_samples();
@@ -189,19 +194,23 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.neighbours = neighbours(problem, fit, single);
   const PoseGroups poses = by_run(joined(single, found.neighbours.together), samples);
   found.size = detail::robot_size(problem);
-  const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
+  const Eigen::MatrixXd inverse = detail::Spectrum(fit.hessian).pseudo_inverse();
   found.noise = estimate_noise(problem, fit, inverse);
   set_repeats(fit, single, found.noise);
-  const Eigen::MatrixXd effects = detail::joint_effects(problem, values, samples, inside, fit);
-  found.common = common_noise(fit, effects, single, found.noise);
-  detail::set_uncertainty(problem, inside, values, fit, inverse, poses,
-                          feature_links(problem, fit, samples), found);
+  // What poses share, the +- and systematic errors, beside what single samples show.
+  std::future<void> shared = std::async(std::launch::async, [&] {
+    const Eigen::MatrixXd effects = detail::joint_effects(problem, values, samples, inside, fit);
+    found.common = common_noise(fit, effects, single, found.noise);
+    detail::set_uncertainty(problem, inside, values, fit, inverse, poses,
+                            feature_links(problem, fit, samples), found);
+    found.systematic = systematic_error({problem, inside, fit, values, samples}, poses, effects,
+                                        found.noise, found.common);
+  });
   found.held_out = detail::held_out_of(*evaluator, values, fit, samples, poses, options);
   found.captures = capture_errors(problem, fit, single);
   detail::keep_what_foretells(*evaluator, values, fit, samples, poses, options, found);
   found.noise_without_bad = noise_without_bad(fit, found.captures);
-  found.systematic = systematic_error({problem, inside, fit, values, samples}, poses, effects,
-                                      found.noise, found.common);
+  shared.get();
   found.folded = folded_lenses(problem, free, values, samples);
   found.maps =
       projection_maps({*evaluator, inside, values, fit, found.uncertainty, samples, poses});
@@ -209,9 +218,15 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
                                detail::known_by_pixels(problem, found.maps));
   found.alike = alike_pixels(problem, fit, found.maps, samples);
   found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
-  if (const auto frames = compared_frames(problem, samples)) {
-    found.pose = pose_uncertainty(problem, inside, values, fit, found.uncertainty, samples,
-                                  frames->first, frames->second);
+  for (const ComparedFrames& frames : compared_frames(problem, samples)) {
+    PoseUncertainty pose = pose_uncertainty(problem, inside, values, fit, found.uncertainty,
+                                            samples, frames.frame, frames.in);
+    pose.elsewhere = detail::deviation_elsewhere(problem, found, pose, values);
+    if (found.pose) {
+      found.further.push_back(std::move(pose));
+    } else {
+      found.pose = std::move(pose);
+    }
   }
   for (std::size_t b = 1; b < options.between.size(); ++b) {
     const FrameOnRobot frame = frame_named(problem, samples, options.between[b]);
@@ -221,7 +236,6 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
                                                frame_named(problem, samples, options.between[a])));
     }
   }
-  if (found.pose) found.elsewhere = detail::deviation_elsewhere(problem, found, values);
   return found;
 }
 

@@ -362,10 +362,17 @@ ShardAssessment assess_shards(const Shards& shards, const FreeSet& free, Paramet
   found.far = detail::far_features(each, sums, of.noise);
   found.copies = detail::copies_among(each.costs);
   found.misfits = std::move(each.misfits);
-  if (const auto frames = compared_frames(drawn, samples)) {
-    const LinearFit fit = linear_fit(*drawn.evaluator(inside, 1), after, by);
-    of.pose = pose_uncertainty(drawn, inside, after, fit, of.uncertainty, samples, frames->first,
-                               frames->second);
+  const std::vector<ComparedFrames> compared = compared_frames(drawn, samples);
+  if (compared.empty()) return found;
+  const LinearFit fit = linear_fit(*drawn.evaluator(inside, 1), after, by);
+  for (const ComparedFrames& frames : compared) {
+    PoseUncertainty pose = pose_uncertainty(drawn, inside, after, fit, of.uncertainty, samples,
+                                            frames.frame, frames.in);
+    if (of.pose) {
+      of.further.push_back(std::move(pose));
+    } else {
+      of.pose = std::move(pose);
+    }
   }
   return found;
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "kinecal/trust/captures/capture_causes.hpp"
 #include "kinecal/trust/captures/ruined.hpp"
@@ -16,6 +17,24 @@ namespace kinecal {
 
 namespace detail {
 namespace {
+
+/// The noise of the error blocks of each step; empty if the result has not converged, or ended with a point behind a camera.
+[[nodiscard]] EstimatedNoise::OfSteps noise_of_steps(const Calibration& calibration,
+                                                     const CalibrationResult& result) {
+  EstimatedNoise::OfSteps noise;
+  if (!result.converged) return noise;
+  const Eigen::VectorXd values = result.table.values();
+  try {
+    for (std::size_t s = 0; s < result.steps.size(); ++s) {
+      const CalibrationStep& step = calibration.steps[s];
+      noise.push_back(noise_at(*step.problem, step.free,
+                               {values.data(), static_cast<std::size_t>(values.size())}));
+    }
+  } catch (const std::domain_error&) {
+    noise.clear();
+  }
+  return noise;
+}
 
 /// The procedure on one calibration.
 class Procedure {
@@ -71,19 +90,22 @@ class Procedure {
     for (auto i = left.rbegin(); i != left.rend(); ++i) numbers_.erase(numbers_.begin() + *i);
   }
 
-  [[nodiscard]] JudgedResult fit_once() const {
+  /// Fits, and fits again with the noise of each block that has no sigma in its place, until it stays.  Judges the last fit.
+  [[nodiscard]] JudgedResult fit() {
+    noise_.reset(calibration_);
+    const auto solved = [&] {
+      return calibrate(calibration_, options_.progress, options_.solving);
+    };
+    const auto noise_of = [&](const CalibrationResult& result) {
+      return noise_of_steps(calibration_, result);
+    };
+    CalibrationResult result = noise_.settle(calibration_, solved, noise_of);
     AssessOptions assessing;
     assessing.meter = options_.solving.meter;
     assessing.between = options_.between;
     assessing.folds = options_.folds > 0 ? options_.folds : static_cast<int>(used_.size());
-    return judge_result(calibration_, calibrate(calibration_, options_.progress, options_.solving),
-                        used_, assessing, options_.doubts, options_.refutable);
-  }
-
-  /// Fits, and fits again with the noise of each block that has no sigma in its place, until it stays.
-  [[nodiscard]] JudgedResult fit() {
-    noise_.reset(calibration_);
-    return noise_.settle(calibration_, [&] { return fit_once(); });
+    return judge_result(calibration_, std::move(result), used_, assessing, options_.doubts,
+                        options_.refutable);
   }
 
   /// Adds likely causes to the samples that were left out as ruined, and to those that are still bad.

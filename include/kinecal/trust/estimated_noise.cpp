@@ -20,18 +20,20 @@ EstimatedNoise::EstimatedNoise(const Calibration& calibration) {
   }
 }
 
-bool EstimatedNoise::update(Calibration& calibration,
-                            const std::vector<Assessment>& assessments) const {
+bool EstimatedNoise::update(Calibration& calibration, const OfSteps& noise) const {
   std::vector<std::pair<Estimated, double>> found;
   bool changed = false;
   for (const Estimated& block : blocks_) {
     const Term& term = calibration.steps[block.step].problem->term(block.term);
-    const BlockNoise* noise = detail::of_block(assessments, &Assessment::noise, term.name);
-    if (noise == nullptr || !(noise->robust > 0.0)) continue;
+    const BlockNoise* of = nullptr;
+    for (const std::vector<BlockNoise>& step : noise) {
+      for (const BlockNoise& one : step) of = one.block == term.name ? &one : of;
+    }
+    if (of == nullptr || !(of->robust > 0.0)) continue;
     constexpr double kStays = 0.01;
     const double before = term.sigma;
-    changed = changed || std::abs(noise->robust - before) > kStays * before;
-    found.emplace_back(block, noise->robust);
+    changed = changed || std::abs(of->robust - before) > kStays * before;
+    found.emplace_back(block, of->robust);
   }
   if (!changed) return false;
   for (const auto& [block, sigma] : found) {

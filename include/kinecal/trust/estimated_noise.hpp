@@ -12,19 +12,24 @@ namespace kinecal {
 /// loss, whose scale is in sigmas, or that share a step with others, against which they are weighed.
 class EstimatedNoise {
  public:
+  /// Noise of the error blocks of each step.
+  using OfSteps = std::vector<std::vector<BlockNoise>>;
+
   explicit EstimatedNoise(const Calibration& calibration);  ///< finds the blocks
 
   /// Fits, and fits again with the noise that residuals show as sigmas, until they stay.
-  /// @param fit  takes nothing, gives a JudgedResult of the calibration
-  template <class Fit>
-  [[nodiscard]] auto settle(Calibration& calibration, const Fit& fit) const {
+  /// @param fit       takes nothing, gives the calibration's result, of any type
+  /// @param noise_of  takes a result, gives OfSteps; empty if it has not converged
+  template <class Fit, class NoiseOf>
+  [[nodiscard]] auto settle(Calibration& calibration, const Fit& fit,
+                            const NoiseOf& noise_of) const {
     constexpr int kRounds = 10;
-    auto judged = fit();
-    for (int round = 0; round < kRounds && judged.result.converged; ++round) {
-      if (!update(calibration, judged.assessments)) break;
-      judged = fit();
+    auto result = fit();
+    for (int round = 0; round < kRounds && !blocks_.empty(); ++round) {
+      if (!update(calibration, noise_of(result))) break;
+      result = fit();
     }
-    return judged;
+    return result;
   }
   /// Forgets the estimates: each sigma is one.
   void reset(Calibration& calibration) const;
@@ -34,10 +39,9 @@ class EstimatedNoise {
  private:
   /// Sets the noise that residuals show as sigmas, unless each stays within 1 % of its sigma.
   /// @param calibration  the one that was given to the constructor
-  /// @param assessments  of its steps
+  /// @param noise        of its steps; of a name that several have, the last one counts
   /// @returns  whether sigmas have changed, so that it should be solved again
-  [[nodiscard]] bool update(Calibration& calibration,
-                            const std::vector<Assessment>& assessments) const;
+  [[nodiscard]] bool update(Calibration& calibration, const OfSteps& noise) const;
 
   /// An error block of a step.
   struct Estimated {

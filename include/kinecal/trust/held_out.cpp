@@ -37,7 +37,8 @@ struct SquaredDistances {
 template <class Visit>
 void hold_out(AnyEvaluator& evaluator, ParameterValues values, const LinearFit& fit,
               const std::vector<int>& fold, const ProgressMeter& meter, const Visit& visit) {
-  const int folds = fold.empty() ? 0 : 1 + *std::max_element(fold.begin(), fold.end());
+  const std::vector<RowSums> sums = sums_without_parts(fit, fit.loss, fold);
+  const int folds = static_cast<int>(std::ssize(sums));
   const auto in = [&](const RowBlock& block, int k) {
     return fold[static_cast<std::size_t>(block.sample)] == k;
   };
@@ -48,7 +49,8 @@ void hold_out(AnyEvaluator& evaluator, ParameterValues values, const LinearFit& 
     }
     const auto kept = std::count_if(fold.begin(), fold.end(), [&](int f) { return f != k; });
     const double priors = static_cast<double>(kept) / static_cast<double>(fold.size());
-    const Refit without = refit(evaluator, values, fit, weights, priors);
+    const Eigen::VectorXd first = step_to_minimum(fit, sums[static_cast<std::size_t>(k)], priors);
+    const Refit without = refit(evaluator, values, fit, weights, first, priors);
     for (const RowBlock& block : fit.blocks) {
       if (!in(block, k)) continue;
       const double used = fit.used.segment(block.first, block.size).mean();

@@ -232,26 +232,25 @@ void judge_priors(const Assessment& step, const ParameterTable& table, Judgement
   }
 }
 
-void judge_pose(const Assessment& step, Judgement& judgement) {
-  if (!step.pose) return;
+void judge_pose(const Assessment& step, const PoseUncertainty& known, Judgement& judgement) {
   constexpr Limits kPosition{0.005, 0.02};
-  const std::string pose = "the position of '" + step.pose->frame + "' in '" + step.pose->in + "'";
-  if (!step.pose->determined) {
+  const std::string pose = "the position of '" + known.frame + "' in '" + known.in + "'";
+  if (!known.determined) {
     judgement.add(Grade::use_with_care,
                   pose +
                       " depends on a combination of parameters that these samples do not "
                       "determine; see 'cannot be determined'",
                   {Remedy::Kind::hold});
   }
-  if (step.elsewhere > kPosition.care && !kPosition.exceeded(step.pose->position)) {
+  if (known.elsewhere > kPosition.care && !kPosition.exceeded(known.position)) {
     judgement.add(Grade::use_with_care,
-                  pose + " is known to " + reading(step.pose->position, "m") +
-                      " at these samples, but to " + reading(step.elsewhere, "m") +
+                  pose + " is known to " + reading(known.position, "m") +
+                      " at these samples, but to " + reading(known.elsewhere, "m") +
                       " over the limits of the joints; use it near these samples only, or record "
                       "poses that differ more",
                   {Remedy::Kind::record});
   }
-  if (!kPosition.exceeded(step.pose->position)) return;
+  if (!kPosition.exceeded(known.position)) return;
   std::string answer = "; record more samples";
   Remedy remedy{Remedy::Kind::record};
   if (!step.pulls.empty()) {  // what a prior shifts is in the +-, and no sample takes it out
@@ -259,9 +258,8 @@ void judge_pose(const Assessment& step, Judgement& judgement) {
     answer = ", as the samples disagree with prior '" + step.pulls.front().prior +
              "'; loosen or remove it";
   }
-  judgement.add(kPosition.grade(step.pose->position),
-                pose + " is known to " + reading(step.pose->position, "m") + " only" + answer,
-                remedy);
+  judgement.add(kPosition.grade(known.position),
+                pose + " is known to " + reading(known.position, "m") + " only" + answer, remedy);
 }
 
 }  // namespace
@@ -316,7 +314,12 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
     if (last) detail::judge_places(*step.problem, assessments[s], result.table, judgement);
     if (last) detail::judge_weak(assessments[s], result.table, judgement);
     if (last) detail::judge_priors(assessments[s], result.table, judgement);
-    if (last) detail::judge_pose(assessments[s], judgement);
+    if (last && assessments[s].pose) {
+      detail::judge_pose(assessments[s], *assessments[s].pose, judgement);
+      for (const PoseUncertainty& pose : assessments[s].further) {
+        detail::judge_pose(assessments[s], pose, judgement);
+      }
+    }
   }
   const bool refutes =
       result.converged && !assessments.empty() && detail::fits_to_noise(assessments.back());

@@ -88,6 +88,7 @@ void add_drawn(const Assessment& drawn, Assessment& all) {
   whole.weak = std::move(all.weak);
   whole.folded = std::move(all.folded);
   whole.pose = std::move(all.pose);
+  whole.further = std::move(all.further);
   whole.rows = all.rows;
   whole.used = all.used;
   whole.samples = all.samples;
@@ -101,7 +102,14 @@ class ShardProcedure {
       : calibration_(calibration), options_(options), noise_(calibration.calibration) {}
 
   [[nodiscard]] JudgedResult run() {
-    JudgedResult judged = noise_.settle(calibration_.calibration, [&] { return fit(); });
+    const auto noise_of = [](const JudgedResult& judged) {
+      EstimatedNoise::OfSteps noise;
+      if (!judged.result.converged) return noise;
+      for (const Assessment& step : judged.assessments) noise.push_back(step.noise);
+      return noise;
+    };
+    JudgedResult judged = noise_.settle(
+        calibration_.calibration, [&] { return fit(); }, noise_of);
     judged.judgement = judge(calibration_.calibration, judged.result, judged.assessments,
                              options_.doubts, options_.refutable);
     judge_files(found_, calibration_.names, judged.judgement);

@@ -134,6 +134,22 @@ TEST_F(ImageFolderTest, EveryRowNeedsItsImageAndEveryImageItsRow) {
                                                HasSubstr("has no row for image b.png")));
 }
 
+TEST_F(ImageFolderTest, AnotherCameraMayHaveTheImageOfARow) {
+  std::filesystem::create_directories(path("right"));
+  write("right/c.png", detail::png_bytes(GrayImage(4, 3, 7)));
+  write("poses.csv", "image,q1\na.png,1\nc.png,2\nb.png,3\n");
+  const auto images =
+      list_images({path("images"), path("poses.csv"), "", "", {path("right")}}, diagnostics_);
+  EXPECT_THAT(diagnostics_.errors, testing::IsEmpty());
+  ASSERT_EQ(images.size(), 2u);
+  EXPECT_EQ(images[1].path, path("images/b.png"));
+  write("poses.csv", "image,q1\na.png,1\nc.png,2\nb.png,3\nd.png,4\n");
+  (void)list_images({path("images"), path("poses.csv"), "", "", {path("right")}}, diagnostics_);
+  EXPECT_THAT(diagnostics_.errors,
+              testing::ElementsAre(testing::HasSubstr("image 'd.png' is not in " + path("images") +
+                                                      ", nor in that of another camera")));
+}
+
 TEST_F(ImageFolderTest, MoreRowsThanImagesAreAnErrorWithBothNumbers) {
   (void)list("q1\n1\n2\n3\n");
   EXPECT_THAT(diagnostics_.errors,

@@ -52,6 +52,24 @@ TEST(RigViews, OfOneNameAreOneSample) {
   EXPECT_THAT(rig[0].looks[0].samples, IsEmpty());
 }
 
+/// What the first finder saw in one photograph may be another target than in the other.
+TEST(RigViews, OfTwoTargetsAreApart) {
+  const auto of_target = [](Look look, const std::string& name) {
+    look.samples[0].observations[0].sensor = name;
+    for (Feature& corner : look.samples[0].observations[0].features) corner.frame = name + "_board";
+    return look;
+  };
+  Look both = of_target(photograph("left/1.png", {0, 1}), "arm_a");
+  both.samples.push_back(of_target(photograph("left/1.png", {0, 1}), "arm_b").samples[0]);
+  std::vector<CameraLooks> rig = {
+      {"left", {both}}, {"right", {of_target(photograph("right/1.png", {1, 2}), "arm_b")}}};
+  const std::vector<Sample> samples = joined_views(rig);
+  ASSERT_THAT(samples, SizeIs(2));
+  EXPECT_EQ(samples[0].observation("right"), nullptr);
+  EXPECT_EQ(samples[1].observation("arm_a"), nullptr);
+  EXPECT_THAT(ids_of(*samples[1].observation("arm_b")), ElementsAre(0, 1, 2));
+}
+
 TEST(RigViews, OfFeaturesWithoutIdsMustBeTheSame) {
   std::vector<CameraLooks> same = {{"left", {photograph("left/1.png", {-1, -1})}},
                                    {"right", {photograph("right/1.png", {-1, -1})}}};

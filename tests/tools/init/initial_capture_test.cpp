@@ -61,6 +61,7 @@ InitAnswers fetch_answers(const InitTargetWord& word, const std::string& camera_
 TEST(InitialCapture, HasTheNamesOfTheConfiguration) {
   const Robot robot = read_urdf(test::source_folder() + "/examples/robots/fetch/fetch.urdf");
   for (const InitTargetWord& word : kInitTargets) {
+    if (word.target == InitTarget::grip) continue;  // of two arms
     for (const char* type : {"camera3d", "camera2d"}) {
       const InitAnswers answers = fetch_answers(word, type);
       if (word.target == InitTarget::ground && answers.camera_type == "camera2d") continue;

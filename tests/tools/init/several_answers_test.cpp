@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kinecal/files/urdf/joined_urdf.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
 #include "support/interval_coverage.hpp"
 #include "support/thrown.hpp"
@@ -105,6 +106,77 @@ TEST(SeveralAnswersCoverage, OfTwoArmsThatSeeEachOthersBoards) {
     const CalibrationResult result = calibrate(calibration);
     coverage.add(result, test::assessment_of(calibration, result, arms.samples),
                  [&](const std::string& name) { return arms.truth(name); });
+  }
+  coverage.check();
+}
+
+// ---- two robots, each with its URDF
+
+/// The arms of TwoArms as two robots with one URDF, the first where its torso is.
+std::string joined_arms() {
+  const std::string both = TwoArms::urdf();
+  const std::size_t begin = both.find("<link name=\"left_0\"/>"),
+                    end = both.find("<link name=\"right_0\"/>");
+  std::string arm =
+      "<robot name=\"arm\"><link name=\"torso\"/>" + both.substr(begin, end - begin) + "</robot>";
+  for (std::size_t at; (at = arm.find("left_")) != std::string::npos;) arm.erase(at, 5);
+  return joined_urdf(
+      std::vector<RobotPart>{{"left", arm, "left.urdf"}, {"right", arm, "right.urdf"}});
+}
+
+const std::vector<std::string> kStands = {"world_left", "world_right"};
+
+TEST(SeveralAnswers, FindWhereTheSecondRobotStands) {
+  const Robot robot = parse_urdf(joined_arms(), "robots.urdf");
+  std::vector<InitAnswers> all = both_arms(robot);
+  relate_stands(robot, kStands, all);
+  const Config config = config_of_answers(robot, all);
+  std::vector<std::string> names;
+  for (const auto& frame : config.steps.front().free_frames) names.push_back(frame.name);
+  EXPECT_THAT(names, testing::UnorderedElementsAre("left_hand_checkerboard", "world_right",
+                                                   "right_eye_joint", "right_hand_checkerboard",
+                                                   "left_eye_joint"))
+      << "the stand in place of the first joint's frame";
+}
+
+TEST(SeveralAnswers, AreRefusedIfNothingRelatesTwoRobots) {
+  const Robot robot = parse_urdf(joined_arms(), "robots.urdf");
+  InitAnswers answers = board_in_a_hand();
+  answers.target = InitTarget::world_checkerboard;
+  const auto refusal = [&](const std::vector<std::string>& cameras) {
+    return test::thrown<InputError>(
+        [&] {
+          std::vector<InitAnswers> all = answers_of_all(robot, answers, {}, cameras);
+          relate_stands(robot, kStands, all);
+        },
+        "nothing");
+  };
+  EXPECT_EQ(refusal({"left_eye", "right_eye"}), "nothing") << "both see the board";
+  EXPECT_THAT(refusal({"left_eye"}),
+              HasSubstr("nothing says where the robot on 'world_right' stands"));
+}
+
+/// From no guess of where the second one stands.
+TEST(SeveralAnswersCoverage, OfTwoRobotsThatSeeEachOthersBoards) {
+  test::IntervalCoverage coverage("two robots that see each other's boards");
+  const int runs = test::repetitions_of_study(100, 12);
+  const Robot robot = parse_urdf(joined_arms(), "robots.urdf");
+  std::vector<InitAnswers> answers = both_arms(robot);
+  for (InitAnswers& one : answers) one.known_lens = true;
+  relate_stands(robot, kStands, answers);
+  const Config config = config_of_answers(robot, answers);
+  std::set<std::string> free;
+  for (const FreeParamConfig& joint : config.steps.front().free_params) free.insert(joint.name);
+  EXPECT_GE(free.size(), 8u) << "four or more of each arm";
+  for (int run = 0; run < runs; ++run) {
+    const TwoArms arms(9000 + std::uint64_t(run), 30, free);
+    Diagnostics diagnostics;
+    const Calibration calibration = assemble(config, robot, arms.samples, diagnostics);
+    diagnostics.throw_if_errors();
+    const CalibrationResult result = calibrate(calibration);
+    coverage.add(
+        result, test::assessment_of(calibration, result, arms.samples),
+        [&](const std::string& name) { return name == "world_right_y" ? -0.5 : arms.truth(name); });
   }
   coverage.check();
 }

@@ -23,7 +23,7 @@ TEST(WorkspaceMap, IsTheUncertaintyOfThePoseAtOneSample) {
   const Eigen::VectorXd values = scene.values();
   const auto problem = make_problem(held_robot(scene.samples[3]), "base_link",
                                     test::table_with_units(), test::kSceneFrames);
-  const auto map = workspace_map(*problem, found, test::NoisyScene::span(values), 3);
+  const auto map = workspace_map(*problem, found, *found.pose, test::NoisyScene::span(values), 3);
   const auto evaluator = scene.solved().evaluator(scene.free());
   const LinearFit fit = scene.linear(*evaluator);
   const PoseUncertainty there =
@@ -40,7 +40,8 @@ TEST(WorkspaceMap, ReachesBeyondTheSamples) {
   test::NoisyScene scene(20);
   const Assessment found = scene.solve_and_assess();
   const Eigen::VectorXd values = scene.values();
-  const auto map = workspace_map(scene.solved(), found, test::NoisyScene::span(values), 300);
+  const auto map =
+      workspace_map(scene.solved(), found, *found.pose, test::NoisyScene::span(values), 300);
   ASSERT_EQ(map.size(), 300u);
   double least = 1.0, most = 0.0;
   for (const KnownPoint& point : map) {
@@ -58,7 +59,8 @@ TEST(WorkspaceMap, FollowsTheCameraIfTheOtherFrameStands) {
   Assessment found = scene.solve_and_assess();
   found.pose->frame = found.pose->link = "base_link";  // in the camera's frame
   const Eigen::VectorXd values = scene.values();
-  const auto map = workspace_map(scene.solved(), found, test::NoisyScene::span(values), 50);
+  const auto map =
+      workspace_map(scene.solved(), found, *found.pose, test::NoisyScene::span(values), 50);
   ASSERT_EQ(map.size(), 50u);
   double farthest = 0.0;
   for (const KnownPoint& point : map) {
@@ -70,12 +72,13 @@ TEST(WorkspaceMap, FollowsTheCameraIfTheOtherFrameStands) {
   EXPECT_GT(farthest, 0.01) << "the head turns the camera";
 }
 
-TEST(WorkspaceMap, IsEmptyWithoutAPoseInQuestion) {
+TEST(WorkspaceMap, IsEmptyWhereNothingIsFree) {
   test::NoisyScene scene(20);
   Assessment found = scene.solve_and_assess();
-  found.pose.reset();
+  found.parameters.clear();
   const Eigen::VectorXd values = scene.values();
-  EXPECT_TRUE(workspace_map(scene.solved(), found, test::NoisyScene::span(values), 10).empty());
+  EXPECT_TRUE(workspace_map(scene.solved(), found, *found.pose, test::NoisyScene::span(values), 10)
+                  .empty());
 }
 
 }  // namespace

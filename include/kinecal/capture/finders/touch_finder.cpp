@@ -5,9 +5,9 @@
 namespace kinecal {
 
 Found TouchFinder::find(const View& /*view*/) const {
-  Feature touched{frame, place};
-  if (has_direction) touched.rotation = Matrix3<double>::Identity();
-  return {{{chain_sensor, {{tip, Vector3<double>::Zero()}}}, {touched_sensor, {touched}}}, "", {}};
+  Feature touches{tip, Vector3<double>::Zero()}, touched{frame, place};
+  if (has_direction) touches.rotation = touched.rotation = Matrix3<double>::Identity();
+  return {{{chain_sensor, {touches}}, {touched_sensor, {touched}}}, "", {}};
 }
 
 }  // namespace kinecal

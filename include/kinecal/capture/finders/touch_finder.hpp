@@ -19,7 +19,7 @@ struct TouchFinder {
   std::string frame = "place";             ///< frame_id: of what is touched
   Vector3<double> place =
       Vector3<double>::Zero();  ///< (3) x y z, metres: where it is in that frame
-  bool has_direction = false;   ///< a plane or a line, whose frame has a direction
+  bool has_direction = false;   ///< of a plane, a line or a hand, whose frame has a direction
 
   /// The observations of both, whatever the view shows.
   [[nodiscard]] Found find(const View& view) const;

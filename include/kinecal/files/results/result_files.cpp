@@ -13,6 +13,7 @@
 
 #include "kinecal/files/cameras/camera_fields.ipp"
 #include "kinecal/files/cameras/camera_info.hpp"
+#include "kinecal/files/results/arm_files.hpp"
 #include "kinecal/files/results/base_file.hpp"
 #include "kinecal/files/results/depth_file.hpp"
 #include "kinecal/files/results/result_text.ipp"
@@ -129,9 +130,11 @@ std::vector<OutputFile> result_files(const Robot& robot, const std::string& urdf
                                      const ResultFileOptions& options) {
   std::vector<OutputFile> files;
   const std::string urdf = detail::dated("calibrated", ".urdf", options.date);
-  files.push_back(
-      {urdf, patch_urdf(urdf_text, urdf_name, robot,
-                        joint_patches(robot, result.table, options.in_servos), options.offsets)});
+  const std::vector<JointPatch> patches = joint_patches(robot, result.table, options.in_servos);
+  files.push_back({urdf, patch_urdf(urdf_text, urdf_name, robot, patches, options.offsets)});
+  for (OutputFile& file : arm_files(robot, patches, files.front().content, options.date)) {
+    files.push_back(std::move(file));
+  }
   for (OutputFile& file : transform_files(robot, result.table, samples)) {
     files.push_back(std::move(file));
   }

@@ -26,7 +26,7 @@ namespace kinecal::detail {
 }
 
 /// "calibrated.urdf", or with a date "calibrated_<date>.urdf".
-[[nodiscard]] inline std::string dated(const char* stem, const char* ending,
+[[nodiscard]] inline std::string dated(const std::string& stem, const char* ending,
                                        const std::string& date) {
   return date.empty() ? fmt::format("{}{}", stem, ending)
                       : fmt::format("{}_{}{}", stem, date, ending);

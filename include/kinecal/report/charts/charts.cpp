@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "kinecal/report/charts/cameras.hpp"
 #include "kinecal/report/charts/convergence.hpp"
 #include "kinecal/report/charts/correlation.hpp"
 #include "kinecal/report/charts/depth.hpp"
@@ -30,10 +31,10 @@ std::vector<Chart> charts(const ReportData& data) {
   using Draw = std::vector<Chart> (*)(const ReportData&);
   const Draw of_parameters = [](const ReportData& of) { return parameter_charts(of); };
   for (const Draw draw : std::initializer_list<Draw>{
-           error_charts, held_out_charts, search_charts, sample_charts, feature_charts,
-           pixel_charts, outline_charts, radial_charts, projection_charts, depth_charts,
-           plane_charts, workspace_charts, of_parameters, correlation_charts, unobservable_charts,
-           convergence_charts, start_charts}) {
+           error_charts, held_out_charts, search_charts, sample_charts, camera_charts,
+           feature_charts, pixel_charts, outline_charts, radial_charts, projection_charts,
+           depth_charts, plane_charts, workspace_charts, of_parameters, correlation_charts,
+           unobservable_charts, convergence_charts, start_charts}) {
     std::vector<Chart> some = draw(data);
     std::move(some.begin(), some.end(), std::back_inserter(all));
   }

@@ -121,7 +121,7 @@ DetectedSamples detect_all(const DetectionInput& input, const DetectionOptions& 
   };
   std::vector<CameraLooks> rig;
   for (const CameraImages& camera : input.rig) {
-    rig.push_back({camera.camera, look_at(camera.images, {}, camera.camera, how)});
+    rig.push_back({camera.camera, look_at(camera.images, CameraInfo{}, camera.camera, how)});
   }
   for (const CameraLooks& camera : rig) {
     found.used += static_cast<std::size_t>(

@@ -12,7 +12,7 @@
 
 namespace kinecal {
 
-/// Photographs of one of several cameras on a body.
+/// Photographs of one of several cameras.
 struct CameraImages {
   std::string camera;  ///< its name and its frame
   std::vector<PosedImage> images;

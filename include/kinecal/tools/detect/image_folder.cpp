@@ -38,6 +38,15 @@ void complete_names(const std::vector<std::string>& images, std::vector<CsvRow>&
   }
 }
 
+/// True if a folder has a file of that name, which may lack its ending.
+[[nodiscard]] bool has_image(const std::string& folder, const std::string& name) {
+  std::error_code failed;
+  for (const auto& file : std::filesystem::directory_iterator(folder, failed)) {
+    if (file.path().filename() == name || file.path().stem() == name) return true;
+  }
+  return false;
+}
+
 /// Assigns images to rows.
 /// @param image  column of their names; nullopt: the order of their names
 /// @return       by the source of each row
@@ -57,8 +66,11 @@ void complete_names(const std::vector<std::string>& images, std::vector<CsvRow>&
                                    std::to_string(rows.size()) + " rows, " + folder.images +
                                    " has " + std::to_string(names.size()) + " images");
     } else if (!std::binary_search(names.begin(), names.end(), file, file_naturally_before)) {
+      const auto has_it = [&](const std::string& other) { return has_image(other, file); };
+      if (std::any_of(folder.others.begin(), folder.others.end(), has_it)) continue;
       diagnostics.error(place, "image '" + printable(name) + "' is not in " + folder.images +
-                                   did_you_mean(file, names));
+                                   (folder.others.empty() ? did_you_mean(file, names)
+                                                          : ", nor in that of another camera"));
     } else if (!used.insert(file).second) {
       diagnostics.error(place, "image '" + printable(name) + "' has a row already");
     } else {
@@ -211,8 +223,9 @@ View read_view(const PosedImage& image, const std::optional<CameraInfo>& camera,
   view.camera = camera;
   view.image = read_image(image.path);
   view.joints = image.joints;
-  if (!camera && image.joints.names.empty() && image.joints.poses.empty()) {
-    view.camera.emplace();  // of a camera alone: its size is all that is known
+  const bool is_alone = image.joints.names.empty() && image.joints.poses.empty();
+  if (!camera && is_alone) view.camera.emplace();
+  if (view.camera && view.camera->width == 0) {  // its size is all that is known
     view.camera->width = view.image.width;
     view.camera->height = view.image.height;
   }

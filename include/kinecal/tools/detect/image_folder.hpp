@@ -23,6 +23,8 @@ struct ImageFolder {
                         ///< files/poses/pose_table.hpp; empty: nobody knows where the robot was
   std::string columns;  ///< meaning of its columns; empty: each is a joint, except `image`
   std::string depth;    ///< folder of depth images, same names except the extension; empty: none
+  std::vector<std::string> others =
+      {};  ///< folders of other cameras, one of which has what this one has not
 };
 
 /// A photograph and the robot's joint positions.
@@ -40,7 +42,8 @@ struct PosedImage {
                                                   Diagnostics& diagnostics);
 
 /// Reads a photograph as a view of a camera.
-/// @param camera       nullopt: unknown; of an image without joints and poses, its camera_info is its size
+/// @param camera       without a size, gets that of the image; nullopt: unknown; of an image without joints and poses,
+///                     its camera_info is its size
 /// @param frame        of the camera
 /// @throws InputError  if a file is damaged, the sizes of depth and image differ, or points cannot
 ///                     be computed because there is no camera

@@ -31,6 +31,18 @@ void join_target(Observation& into, const Observation& from, const std::string& 
   }
 }
 
+/// What a sample is of: its photograph, and the target that a finder saw in it, by sensor and frame.
+using ViewKey = std::pair<std::string, std::string>;
+
+[[nodiscard]] ViewKey key_of(const std::string& photograph, const Sample& sample) {
+  for (const Observation& seen : sample.observations) {
+    if (seen.camera) continue;
+    const std::string frame = seen.features.empty() ? "" : seen.features.front().frame;
+    return {photograph, seen.sensor + " " + frame};
+  }
+  return {photograph, ""};
+}
+
 void join_views(Sample& into, Sample from) {
   for (Observation& seen : from.observations) {
     const auto same = std::find_if(into.observations.begin(), into.observations.end(),
@@ -41,26 +53,25 @@ void join_views(Sample& into, Sample from) {
       join_target(*same, seen, into.source);
     }
   }
-  into.source += ", " + from.source;
+  if (into.source != from.source) into.source += ", " + from.source;  // else: of one row of a table
 }
 
 }  // namespace
 }  // namespace detail
 
 std::vector<Sample> joined_views(std::vector<CameraLooks>& all) {
-  // By the name of the photograph, and which one of its samples: several finders may see targets apart.
-  std::map<std::pair<std::string, std::size_t>, Sample> by_name;
+  std::map<detail::ViewKey, Sample> by_name;
   for (CameraLooks& camera : all) {
     for (Look& look : camera.looks) {
       const std::string name = std::filesystem::path(look.source).stem().string();
-      for (std::size_t k = 0; k < look.samples.size(); ++k) {
-        Sample sample = std::move(look.samples[k]);
+      for (Sample& sample : look.samples) {
+        const detail::ViewKey key = detail::key_of(name, sample);
         for (Observation& seen : sample.observations) {
           if (seen.camera) seen.sensor = camera.camera;
         }
-        const auto at = by_name.find({name, k});
+        const auto at = by_name.find(key);
         if (at == by_name.end()) {
-          by_name.emplace(std::pair(name, k), std::move(sample));
+          by_name.emplace(key, std::move(sample));
         } else {
           detail::join_views(at->second, std::move(sample));
         }

@@ -1,4 +1,4 @@
-// Photographs of several cameras on one body: those of one name were taken at once, and are one sample.
+// Photographs of several cameras: those of one name were taken at once, and are one sample.
 //
 //   images/left/0001.png   images/right/0001.png   -> one sample of both
 //
@@ -18,7 +18,7 @@ struct CameraLooks {
   std::vector<Look> looks;  ///< their sources are the paths of the photographs
 };
 
-/// Joins what cameras saw at once.  Cameras get their names; features of a target that both saw are there once, by id.
+/// Joins what cameras saw at once, for each target apart.  Cameras get their names; features of a target that both saw are there once, by id.
 /// @param all  of each camera; its samples are taken out
 /// @returns    in the natural order of the names of the photographs
 /// @throws SampleError  if features without ids are not the same ones for two cameras

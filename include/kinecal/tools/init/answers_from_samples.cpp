@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/config/expected_joints.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
@@ -41,10 +42,11 @@ void check_joints_of(const Robot& robot, const std::vector<Sample>& samples) {
       })) {
     return;
   }
+  const std::string expected = expected_joints(robot, {names.begin(), names.end()});
   throw InputError(
-      fmt::format("--from: none of the joints of the samples ({}, ...) is in the URDF of '{}'; "
-                  "give the URDF of their robot",
-                  *names.begin(), robot.name()));
+      fmt::format("--from: none of the joints of the samples ({}, ...) is in the URDF of '{}'{}",
+                  *names.begin(), robot.name(),
+                  expected.empty() ? "; give the URDF of their robot" : expected));
 }
 
 /// The link from which all joints are in the samples, if both ends hang on it: the joint of a rail or a torso that
@@ -223,10 +225,36 @@ void check_no_pixels(const std::vector<const SeenSensor*>& chains) {
   return Eigen::Vector4d(square.ldlt().solve(right)).head<3>();
 }
 
+/// Several arms, whose sensors have the names of their links, and the sensor of what they touch.
+/// @throws InputError  if there is not one sensor with another name
+void add_several_touching(const Robot& robot, std::span<const Sample> samples,
+                          const std::vector<const SeenSensor*>& chains, InitAnswers& answers) {
+  std::vector<const SeenSensor*> arms, others;
+  for (const SeenSensor* sensor : chains)
+    (robot.has_link(sensor->name) ? arms : others).push_back(sensor);
+  if (others.size() != 1) {
+    throw InputError(
+        fmt::format("--from: several arms touch something, so all sensors but one have the names "
+                    "of the arms' links; these are {}",
+                    names_of(chains)));
+  }
+  answers.tracker = others.front()->name;
+  answers.places = others.front()->frames;
+  if (answers.target == InitTarget::sockets && others.front()->varies)
+    answers.layout = places_of(samples, answers.tracker);
+  answers.arm = answers.holder = arms.front()->name;
+  answers.target_frame = arms.front()->frames.front();
+  for (auto arm = arms.begin() + 1; arm != arms.end(); ++arm)
+    answers.more_arms.push_back({(*arm)->name, (*arm)->frames.front()});
+}
+
 /// A tip and what it touches: two sensors without a camera, neither of which measures.
 /// @throws InputError  if there are not two
 void add_touched(const Robot& robot, std::span<const Sample> samples,
                  const std::vector<const SeenSensor*>& chains, InitAnswers& answers) {
+  const bool are_several = chains.size() > 2 && (answers.target == InitTarget::point ||
+                                                 answers.target == InitTarget::sockets);
+  if (are_several) return add_several_touching(robot, samples, chains, answers);
   if (chains.size() != 2) {
     throw InputError(
         fmt::format("--from: a tip touches something, so samples have two sensors "
@@ -239,6 +267,7 @@ void add_touched(const Robot& robot, std::span<const Sample> samples,
   answers.tracker = touched.name;
   if (answers.target_frame.empty()) answers.target_frame = held.frames.front();
   answers.places = touched.frames;
+  if (answers.target == InitTarget::grip && answers.arm.empty()) answers.arm = held.frames.front();
   if (answers.target == InitTarget::sockets && touched.varies) {
     answers.layout = places_of(samples, touched.name);
   }

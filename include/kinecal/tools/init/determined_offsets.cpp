@@ -66,14 +66,19 @@ class GeneratedPoses {
         count_(count),
         random_(seed),
         measured_(std::move(measured)),
-        to_target_(make_chain(robot, measured_.base, measured_.target, frames)),
+        tips_({{measured_.target, measured_.target_frame}}),
         to_sensor_(make_chain(robot, measured_.base, measured_.sensor, frames)) {
+    tips_.insert(tips_.end(), measured_.more_tips.begin(), measured_.more_tips.end());
+    for (const FurtherTip& tip : tips_)
+      to_tips_.push_back(make_chain(robot, measured_.base, tip.link, frames));
     std::set<std::string> drives;
-    for (const RuntimeChain* chain : {&to_target_, &to_sensor_}) {
-      for (const ChainJoint& joint : chain->joints) {
+    const auto add_drives = [&](const RuntimeChain& chain) {
+      for (const ChainJoint& joint : chain.joints) {
         if (moves(joint.type)) drives.insert(joint.drive.joint);
       }
-    }
+    };
+    for (const RuntimeChain& chain : to_tips_) add_drives(chain);
+    add_drives(to_sensor_);
     place();
     if (measured_.contact == Contact::none) {
       generate(drives);
@@ -84,6 +89,12 @@ class GeneratedPoses {
 
   /// Positions by joint.
   [[nodiscard]] const std::vector<NamedNumbers>& poses() const { return poses_; }
+  /// Which tip touches in a pose: each in turn, after all sockets.
+  [[nodiscard]] std::size_t tip_of(std::size_t pose) const {
+    return sockets_.empty() ? 0 : pose / sockets_.size() % tips_.size();
+  }
+  /// Where what is touched is in its link.
+  [[nodiscard]] const Pose<double>& link_T_sensor() const { return link_T_sensor_; }
   /// Of a distance sensor in each pose, metres; else empty.
   [[nodiscard]] const std::vector<double>& distances() const { return distances_; }
 
@@ -113,6 +124,7 @@ class GeneratedPoses {
   [[nodiscard]] std::array<bool, 6> sensor_axes() const {
     switch (measured_.contact) {
       case Contact::none:
+      case Contact::grip:
         return {true, true, true, true, true, true};
       case Contact::line:
         return {true, true, false, true, true, false};
@@ -166,21 +178,30 @@ class GeneratedPoses {
   }
 
   [[nodiscard]] Pose<double> seen_from(const NamedNumbers& pose, const NamedNumbers& offsets,
-                                       const NamedPoses& corrections) const {
+                                       const NamedPoses& corrections, std::size_t tip = 0) const {
     const auto correction = [&](const std::string& frame) {
       const auto found = corrections.find(frame);
       return found == corrections.end() ? Pose<double>() : found->second;
     };
-    const Pose<double> base_T_target = end_of(to_target_, pose, offsets, corrections) *
-                                       link_T_target_ * correction(measured_.target_frame);
+    const Pose<double> base_T_target = end_of(to_tips_[tip], pose, offsets, corrections) *
+                                       link_T_target_ * correction(tips_[tip].frame);
     const Pose<double> base_T_sensor = end_of(to_sensor_, pose, offsets, corrections) *
                                        link_T_sensor_ * correction(measured_.sensor_frame);
     return base_T_sensor.inverse() * base_T_target;
   }
 
-  /// What a contact shows of a point in its frame.
-  [[nodiscard]] Eigen::VectorXd shown(const Vector3<double>& p) const {
+  /// What a contact shows of what touches it.
+  /// @param seen    in the frame of the contact; of a point, its place
+  /// @param socket  that is touched, in this frame
+  [[nodiscard]] Eigen::VectorXd shown(const Pose<double>& seen,
+                                      const Vector3<double>& socket) const {
+    const Vector3<double> p = seen.translation - socket;
     switch (measured_.contact) {
+      case Contact::grip: {
+        Eigen::VectorXd pose(6);
+        pose << p, log(seen.rotation);
+        return pose;
+      }
       case Contact::line:
         return p.head<2>();
       case Contact::plane:
@@ -199,7 +220,7 @@ class GeneratedPoses {
 
   [[nodiscard]] Eigen::VectorXd touched(const NamedNumbers& offsets, const NamedPoses& corrections,
                                         int socket) const {
-    const Eigen::Index rows = shown(Vector3<double>::UnitX()).size();
+    const Eigen::Index rows = shown({}, Vector3<double>::UnitX()).size();
     Eigen::VectorXd all(rows * static_cast<Eigen::Index>(poses_.size()));
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       NamedPoses of_pose = corrections;
@@ -213,10 +234,9 @@ class GeneratedPoses {
             seen_from(poses_[i], offsets, of_pose).rotation * before.row(2).transpose();
         continue;
       }
-      const Pose<double> sensor_T_target = seen_from(poses_[i], offsets, of_pose);
-      const double distance = distances_.empty() ? 0.0 : distances_[i];
-      all.segment(static_cast<Eigen::Index>(i) * rows, rows) =
-          shown(sensor_T_target * Vector3<double>(0.0, 0.0, distance) - sockets_[socket_of(i)]);
+      Pose<double> seen = seen_from(poses_[i], offsets, of_pose, tip_of(i));
+      if (!distances_.empty()) seen.translation = seen * Vector3<double>(0.0, 0.0, distances_[i]);
+      all.segment(static_cast<Eigen::Index>(i) * rows, rows) = shown(seen, sockets_[socket_of(i)]);
     }
     return all;
   }
@@ -232,21 +252,27 @@ class GeneratedPoses {
         pose[joint] = random_position(driven(robot_, joint), random_);
       return pose;
     };
-    const auto tip_in_base = [&](const NamedNumbers& pose) {
-      return (end_of(to_target_, pose, {}, {}) * link_T_target_).translation;
+    const auto tip_in_base = [&](const NamedNumbers& pose, std::size_t tip) {
+      return (end_of(to_tips_[tip], pose, {}, {}) * link_T_target_).translation;
     };
+    const bool is_known = measured_.sensor_frame.empty();  // where what is touched is
     while (measured_.contact == Contact::gravity && poses_.size() < count_) {
       poses_.push_back(random_pose());
     }
-    for (int i = 0; i < kTries && poses_.empty(); ++i) {
-      // A contact in the middle of what random poses reach, not at its border.
-      Vector3<double> middle = Vector3<double>::Zero();
-      constexpr int kMean = 3;
-      for (int k = 0; k < kMean; ++k) middle += tip_in_base(random_pose()) / kMean;
-      const Pose<double> base_T_sensor = end_of(to_sensor_, random_pose(), {}, {});
-      link_T_sensor_.translation = base_T_sensor.inverse() * middle;
-      if (measured_.contact == Contact::sphere) {
-        link_T_sensor_.translation += kRadius * Vector3<double>(0.6, 0.0, -0.8);
+    for (int i = 0; i < (is_known ? 1 : kTries) && poses_.empty(); ++i) {
+      if (measured_.contact == Contact::grip) {
+        link_T_sensor_ = random_grip();
+      } else if (!is_known) {
+        // A contact in the middle of what random poses reach, not at its border.
+        Vector3<double> middle = Vector3<double>::Zero();
+        constexpr std::size_t kMean = 3;
+        for (std::size_t k = 0; k < kMean; ++k)
+          middle += tip_in_base(random_pose(), k % tips_.size()) / kMean;
+        const Pose<double> base_T_sensor = end_of(to_sensor_, random_pose(), {}, {});
+        link_T_sensor_.translation = base_T_sensor.inverse() * middle;
+        if (measured_.contact == Contact::sphere) {
+          link_T_sensor_.translation += kRadius * Vector3<double>(0.6, 0.0, -0.8);
+        }
       }
       sockets_ = measured_.layout;
       for (int k = 0; k < measured_.places && measured_.layout.empty(); ++k) {
@@ -256,12 +282,24 @@ class GeneratedPoses {
       distances_.clear();
       for (int n = 0; n < static_cast<int>(20 * count_) && poses_.size() < count_; ++n) {
         NamedNumbers pose = random_pose();
-        const bool touches = measured_.is_point ? reach(pose, drives) : measures(pose);
+        const bool has_tip = measured_.is_point || measured_.contact == Contact::grip;
+        const bool touches = has_tip ? reach(pose, drives) : measures(pose);
         if (touches) poses_.push_back(std::move(pose));
       }
       if (poses_.size() < count_ / 3)
         poses_.clear(), distances_.clear();  // hardly reachable: another place
     }
+  }
+
+  /// How one hand may stand in the other, with something between them that both hold.
+  [[nodiscard]] Pose<double> random_grip() {
+    constexpr double kBetween = 0.3;  // metres
+    const auto random_vector = [&] {
+      const double x = random_number(random_), y = random_number(random_);
+      return Vector3<double>(x, y, random_number(random_));
+    };
+    return {exp(Vector3<double>(std::numbers::pi * random_vector())),
+            kBetween * random_vector().normalized()};
   }
 
   /// Whether a distance sensor measures the plane in a pose; keeps its distance.
@@ -280,8 +318,8 @@ class GeneratedPoses {
     constexpr int kIterations = 30;
     constexpr double kStep = 1e-6, kMost = 0.3, kClose = 1e-9;
     const auto missed = [&](const NamedNumbers& at) -> Eigen::VectorXd {
-      Eigen::VectorXd by =
-          shown(seen_from(at, {}, {}).translation - sockets_[socket_of(poses_.size())]);
+      const std::size_t next = poses_.size();
+      Eigen::VectorXd by = shown(seen_from(at, {}, {}, tip_of(next)), sockets_[socket_of(next)]);
       by.array() -= radius_;
       return by;
     };
@@ -315,6 +353,7 @@ class GeneratedPoses {
   void place() {
     constexpr double kAside = 0.1, kAway = 1.0;  // metres
     const Vector3<double> away(0.5, -0.6, 0.7);
+    if (measured_.contact == Contact::grip) return;  // the hands themselves
     link_T_target_.translation = kAside * away;
     if (!measured_.target_frame.empty() && !measured_.is_point) {
       link_T_target_.rotation = exp(Vector3<double>(0.4, 0.9, -0.3));
@@ -362,8 +401,8 @@ class GeneratedPoses {
   void put_before_camera(const NamedNumbers& pose) {
     Pose<double> ahead;
     ahead.translation = {0.05, -0.05, 0.7};
-    link_T_target_ =
-        end_of(to_target_, pose, {}, {}).inverse() * (end_of(to_sensor_, pose, {}, {}) * ahead);
+    link_T_target_ = end_of(to_tips_.front(), pose, {}, {}).inverse() *
+                     (end_of(to_sensor_, pose, {}, {}) * ahead);
     link_T_target_.rotation = link_T_target_.rotation * exp(Vector3<double>(0.3, 0.2, 0.5));
   }
 
@@ -371,7 +410,9 @@ class GeneratedPoses {
   std::size_t count_;
   std::mt19937_64 random_;
   MeasuredTarget measured_;
-  RuntimeChain to_target_, to_sensor_;
+  std::vector<FurtherTip> tips_;  ///< the target, then further ones
+  std::vector<RuntimeChain> to_tips_;
+  RuntimeChain to_sensor_;
   Pose<double> link_T_target_, link_T_sensor_;
   std::vector<Vector3<double>> points_;
   std::vector<NamedNumbers> poses_;
@@ -487,7 +528,10 @@ std::array<bool, 6> shown_axes(const std::vector<Vector3<double>>& layout) {
 
 std::vector<std::string> driven_joints(const Robot& robot, const MeasuredTarget& measured) {
   std::vector<std::string> names;
-  for (const std::string& end : {measured.target, measured.sensor}) {
+  std::vector<std::string> ends = {measured.target};
+  for (const FurtherTip& tip : measured.more_tips) ends.push_back(tip.link);
+  ends.push_back(measured.sensor);
+  for (const std::string& end : ends) {
     const RuntimeChain chain = make_chain(robot, measured.base, end);
     for (const ChainJoint& joint : chain.joints) {
       const std::string& name = joint.drive.joint;
@@ -501,7 +545,10 @@ std::vector<std::string> driven_joints(const Robot& robot, const MeasuredTarget&
 TouchingPoses touching_poses(const Robot& robot, const MeasuredTarget& measured, std::size_t count,
                              std::uint64_t seed) {
   const detail::GeneratedPoses generated(robot, measured, {}, count, seed);
-  return {generated.poses(), generated.distances()};
+  TouchingPoses touching{generated.poses(), {}, generated.distances(), generated.link_T_sensor()};
+  for (std::size_t i = 0; i < touching.positions.size(); ++i)
+    touching.tips.push_back(generated.tip_of(i));
+  return touching;
 }
 
 OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
@@ -526,6 +573,7 @@ OffsetEffects offset_effects(const Robot& robot, const MeasuredTarget& measured,
     target_axes[5] = false;  // about the direction of a distance
   }
   add(measured.target_frame, target_axes);
+  for (const FurtherTip& tip : measured.more_tips) add(tip.frame, target_axes);
 
   OffsetEffects effects;
   detail::Span span;

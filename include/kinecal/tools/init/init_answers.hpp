@@ -29,6 +29,7 @@ enum class InitTarget {
   sphere,
   bar,
   distance,
+  grip,
   gravity
 };
 
@@ -44,7 +45,7 @@ struct InitTargetWord {
 };
 
 /// All targets, in the order of questions.
-inline constexpr std::array<InitTargetWord, 19> kInitTargets = {{
+inline constexpr std::array<InitTargetWord, 20> kInitTargets = {{
     {InitTarget::leds, InitBoard::checkerboard, "leds",
      "LEDs (or other points at known places) on the gripper, seen by a camera"},
     {InitTarget::checkerboard, InitBoard::checkerboard, "checkerboard",
@@ -79,6 +80,8 @@ inline constexpr std::array<InitTargetWord, 19> kInitTargets = {{
      "nothing measures: a ball bar from the tip to a socket"},
     {InitTarget::distance, InitBoard::checkerboard, "distance",
      "a dial gauge or a distance sensor on the arm, against a plane: one number a pose"},
+    {InitTarget::grip, InitBoard::checkerboard, "grip",
+     "nothing measures: both hands of a robot hold one rigid thing, such as a board or a bar"},
     {InitTarget::gravity, InitBoard::checkerboard, "gravity",
      "an accelerometer on the arm, which reads gravity at rest"},
 }};
@@ -128,6 +131,12 @@ inline constexpr std::array<InitTargetWord, 19> kInitTargets = {{
   return target == InitTarget::sockets || target == InitTarget::sphere || target == InitTarget::bar;
 }
 
+/// True if a place that the tip touches may be known on the link that carries it: of a point, of sockets, of the center of
+/// a sphere and the end of a bar.
+[[nodiscard]] constexpr bool has_place(InitTarget target) {
+  return target == InitTarget::point || target == InitTarget::tool || has_length(target);
+}
+
 /// True if the target is a board, in the gripper or in the world.
 [[nodiscard]] constexpr bool is_board(InitTarget target) {
   return target == InitTarget::checkerboard || target == InitTarget::world_checkerboard;
@@ -135,8 +144,15 @@ inline constexpr std::array<InitTargetWord, 19> kInitTargets = {{
 
 /// True if points are recorded in a frame of the target, which is not in the URDF.
 [[nodiscard]] constexpr bool needs_target_frame(InitTarget target) {
-  return target != InitTarget::leds && target != InitTarget::ground && target != InitTarget::robot;
+  return target != InitTarget::leds && target != InitTarget::ground &&
+         target != InitTarget::robot && target != InitTarget::grip;
 }
+
+/// A further arm that touches the same places.
+struct FurtherArm {
+  std::string arm;           ///< link at its end, and sensor_name of its tip
+  std::string target_frame;  ///< of its tip
+};
 
 /// The user's answers.  Links are links of the URDF; fields that a target does not need stay empty.
 struct InitAnswers {
@@ -149,19 +165,24 @@ struct InitAnswers {
   std::string camera_name = "camera";    ///< sensor_name of the samples, prefix of its parameters
   std::string target_frame = {};  ///< of the board or the reflector, the frame_id of its points
   std::vector<std::string> more_reflectors = {};  ///< frames of further ones, with a tracker
+  std::vector<FurtherArm> more_arms = {};         ///< that touch the same points or sockets
   std::string tracker_frame = {};  ///< of a laser tracker, the frame_id of its measurements
   InitBoard board = InitBoard::checkerboard;  ///< of a board
   std::string holder = {};   ///< sensor_name of what holds the target; empty: "arm" or "board"
   std::string tracker = {};  ///< sensor_name of a laser tracker; empty: "tracker"
-  std::string carrier = {};  ///< link that carries what is touched; empty: the base
+  std::string carrier =
+      {};  ///< link that carries what is touched; empty: the base; of a grip: the other hand
   std::vector<std::string> places =
       {};                             ///< frames of what is touched: one for each socket, else one
   std::optional<double> length = {};  ///< metres, if it is known: see has_length()
   std::vector<Vector3<double>> layout =
       {};  ///< metres: places of sockets in one frame; empty: not known
+  std::optional<Vector3<double>> at =
+      {};  ///< metres, in the carrier: a place on it that is known: see has_place()
   Vector3<double> center =
-      Vector3<double>::Zero();  ///< where a sphere or the end of a bar may be, in the base
-  bool known_lens = false;      ///< the intrinsics of the camera are held
+      Vector3<double>::Zero();           ///< where a sphere or the end of a bar may be, in the base
+  bool known_lens = false;               ///< the intrinsics of the camera are held
+  std::vector<std::string> stands = {};  ///< joints on which robots stand at a pose to be found
 };
 
 /// The sensor_name of what holds the target: the arm, or a board in the world.

@@ -125,20 +125,23 @@ namespace {
              name_to_yaml(holder_of(answers)), name_to_yaml(answers.arm));
 }
 
-/// What the tip touches: a finder for each place.
-[[nodiscard]] std::string touches_text(const InitAnswers& answers) {
+/// What a tip touches: a finder for each place.
+/// @param of  of several arms: "_" and its name
+[[nodiscard]] std::string touches_text(const InitAnswers& answers, const std::string& of) {
   const bool has_layout = !answers.layout.empty();
   const std::size_t count = has_layout ? answers.layout.size() : answers.places.size();
-  const bool has_direction =
-      answers.target == InitTarget::plane || answers.target == InitTarget::line;
+  const bool has_direction = answers.target == InitTarget::plane ||
+                             answers.target == InitTarget::line ||
+                             answers.target == InitTarget::grip;
   std::string text;
   for (std::size_t i = 0; i < count; ++i) {
     const std::string& frame = answers.places[has_layout ? 0 : i];
     text += fmt::format(
         "  {}:\n    type: TouchFinder\n    chain_sensor_name: {}\n    tip_frame: {}\n"
         "    touched_sensor_name: {}\n    frame_id: {}\n",
-        has_layout ? fmt::format("socket_{}", i + 1) : frame, name_to_yaml(holder_of(answers)),
-        name_to_yaml(answers.target_frame), name_to_yaml(tracker_of(answers)), name_to_yaml(frame));
+        name_to_yaml((has_layout ? fmt::format("socket_{}", i + 1) : frame) + of),
+        name_to_yaml(holder_of(answers)), name_to_yaml(answers.target_frame),
+        name_to_yaml(tracker_of(answers)), name_to_yaml(frame));
     if (has_direction) text += "    has_direction: true\n";
     if (has_layout) {
       const Vector3<double>& at = answers.layout[i];
@@ -165,9 +168,17 @@ std::string initial_capture(const Robot& robot, const std::vector<InitAnswers>& 
   // Their readings come in a table.
   if (answers.target == InitTarget::distance || answers.target == InitTarget::gravity) return "";
   if (is_touched(answers.target)) {
-    return fmt::format("{}: what the tip touches, for `kinecal capture --manual`.\n\nfeatures:\n",
-                       kInitialCaptureMark) +
-           detail::touches_text(answers);
+    std::string text =
+        fmt::format("{}: what the tip touches, for `kinecal capture --manual`.\n\nfeatures:\n",
+                    kInitialCaptureMark) +
+        detail::touches_text(answers, answers.more_arms.empty() ? "" : "_" + answers.arm);
+    for (const FurtherArm& more : answers.more_arms) {
+      InitAnswers of = answers;
+      of.holder = more.arm;
+      of.target_frame = more.target_frame;
+      text += detail::touches_text(of, "_" + more.arm);
+    }
+    return text;
   }
   if (answers.target == InitTarget::leds && in_pixels) return "";
   std::string text = fmt::format(

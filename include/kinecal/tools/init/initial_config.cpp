@@ -41,15 +41,30 @@ struct InitLeftOut {
 };
 
 struct InitPlan {
-  std::vector<InitEntry> models, free_params, free_frames, initial_values, error_blocks;
+  std::vector<InitEntry> models, free_params, free_frames, fixed_frames, initial_values,
+      error_blocks;
   std::vector<InitLeftOut> left_out;
 };
 
+/// A frame with its pose: zeros.
+[[nodiscard]] InitEntry frame_at_zero(const std::string& frame, const std::string& why) {
+  InitEntry entry{why, frame, {}};
+  for (const char* key : {"x", "y", "z", "roll", "pitch", "yaw"}) {
+    entry.fields.emplace_back(key, "0.0");
+  }
+  return entry;
+}
+
 /// The initial value of a frame that is not in the URDF: zeros, to be replaced by hand.
 void add_initial_value(InitPlan& plan, const std::string& frame, const std::string& why) {
-  plan.initial_values.push_back({why, frame, {}});
-  for (const char* key : {"x", "y", "z", "roll", "pitch", "yaw"}) {
-    plan.initial_values.back().fields.emplace_back(key, "0.0");
+  plan.initial_values.push_back(frame_at_zero(frame, why));
+}
+
+/// Writes where a frame is.
+/// @param at  metres
+void put(InitEntry& frame, const Vector3<double>& at) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    frame.fields[i].second = fmt::format("{}", at(static_cast<Eigen::Index>(i)));
   }
 }
 
@@ -71,6 +86,21 @@ void free_frame(InitPlan& plan, const std::string& name, const std::string& why,
 [[nodiscard]] std::vector<ChainJoint> movers(const Robot& robot, const std::string& base,
                                              const std::string& tip) {
   return make_chain(robot, base, tip).joints;
+}
+
+/// The stands of robots that the samples of a camera relate to what it sees: those on the way to one of them only.
+[[nodiscard]] std::vector<std::string> related_stands(const Robot& robot,
+                                                      const InitAnswers& answers) {
+  const auto stand_of = [&](const std::string& link) {
+    return joint_above(robot, link.empty() ? answers.base : link, answers.stands);
+  };
+  const std::string seen = stand_of(answers.arm), seen_by = stand_of(answers.camera);
+  std::vector<std::string> related;
+  if (seen == seen_by) return related;
+  for (const std::string& stand : {seen, seen_by}) {
+    if (!stand.empty()) related.push_back(stand);
+  }
+  return related;
 }
 
 /// Removes the common joints at the beginning of two chains.
@@ -107,7 +137,9 @@ bool free_offsets(InitPlan& plan, const Robot& robot, const MeasuredTarget& meas
                                "frames and of the offsets above"});
     }
   }
-  for (const std::string& end : {measured.target, measured.sensor}) {
+  std::vector<std::string> ends = {measured.target, measured.sensor};
+  for (const FurtherTip& tip : measured.more_tips) ends.push_back(tip.link);
+  for (const std::string& end : ends) {
     for (const ChainJoint& joint : movers(robot, measured.base, end)) {
       const auto is_known = [&](const InitLeftOut& known) { return known.joint == joint.name; };
       if (joint.drive.joint == joint.name ||
@@ -268,13 +300,16 @@ void add_mounted_camera(InitPlan& plan, const InitAnswers& answers, const std::s
 /// @returns     whether the samples determine the frame of the mount
 bool free_arm_and_head(InitPlan& plan, const Robot& robot, const InitAnswers& answers,
                        const std::vector<ChainJoint>& head, const std::string& mount) {
-  const std::string head_frame = head.empty() ? mount : head.front().name;
+  const std::vector<std::string> stands = related_stands(robot, answers);
+  const std::string head_frame = head.empty()      ? mount
+                                 : !stands.empty() ? stands.front()
+                                                   : head.front().name;
   MeasuredTarget seen = seen_by_camera(answers, answers.arm);
   if (!is_board(answers.target)) seen.target_frame.clear();
   std::vector<std::string> frames = {head_frame};
   if (mount != head_frame) frames.push_back(mount);
   const bool determined = free_offsets(plan, robot, seen, frames);
-  if (!head.empty()) {
+  if (!head.empty() && stands.empty()) {
     free_frame(plan, head_frame, "How the part that carries the camera is mounted on the robot.");
   }
   return determined;
@@ -409,6 +444,8 @@ bool free_arm_and_head(InitPlan& plan, const Robot& robot, const InitAnswers& an
       return Contact::sphere;
     case InitTarget::gravity:
       return Contact::gravity;
+    case InitTarget::grip:
+      return Contact::grip;
     default:
       return Contact::point;
   }
@@ -417,13 +454,20 @@ bool free_arm_and_head(InitPlan& plan, const Robot& robot, const InitAnswers& an
 /// What the tip touches, seen from the arm's base.
 [[nodiscard]] MeasuredTarget touched_by_arm(const InitAnswers& answers) {
   MeasuredTarget touched{answers.base, answers.arm, answers.carrier};
-  touched.target_frame = answers.target_frame;
-  touched.is_point = answers.target != InitTarget::distance;
-  touched.sensor_frame = answers.places.front();
   touched.contact = contact_of(answers.target);
+  const bool is_grip = touched.contact == Contact::grip;
+  if (!is_grip) touched.target_frame = answers.target_frame;
+  touched.is_point = answers.target != InitTarget::distance && !is_grip;
+  if (!answers.at) touched.sensor_frame = answers.places.front();
   touched.radius_known = answers.length.has_value();
   touched.places = static_cast<int>(answers.places.size());
   touched.layout = answers.layout;
+  for (const FurtherArm& more : answers.more_arms)
+    touched.more_tips.push_back({more.arm, more.target_frame});
+  if (answers.at && touched.layout.empty()) touched.layout = {Vector3<double>::Zero()};
+  for (Vector3<double>& place : touched.layout) {
+    if (answers.at) place += *answers.at;
+  }
   return touched;
 }
 
@@ -441,11 +485,23 @@ void free_axes(InitPlan& plan, const std::string& name, const std::string& why,
 void free_places(InitPlan& plan, const InitAnswers& answers) {
   const std::string base = name_to_yaml(answers.carrier);
   const std::string& first = answers.places.front();
+  if (answers.at) {
+    plan.fixed_frames.push_back(
+        frame_at_zero(first, "What is touched, at a known place of link " + base +
+                                 ", which is held: an error of this place is one of the result."));
+    put(plan.fixed_frames.back(), *answers.at);
+    return;
+  }
   switch (answers.target) {
     case InitTarget::plane:
     case InitTarget::distance:
       free_axes(plan, first, "The plane: z = 0 of this frame, seen from link " + base + ".",
                 {false, false, true, true, true, false});
+      break;
+    case InitTarget::grip:
+      free_frame(plan, first,
+                 "Where hand " + name_to_yaml(answers.arm) + " is in hand " + base +
+                     " while both hold the same thing: anywhere, but always there.");
       break;
     case InitTarget::line:
       free_axes(plan, first, "The line: the z axis of this frame, seen from link " + base + ".",
@@ -487,6 +543,12 @@ void free_places(InitPlan& plan, const InitAnswers& answers) {
 void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers& answers) {
   free_offsets(plan, robot, touched_by_arm(answers), {});
   if (!plan.free_params.empty()) return;
+  if (answers.at) {
+    throw InputError(fmt::format(
+        "--touched-at: arm '{}' hardly reaches this place of link '{}' within the limits of its "
+        "joints; is it in metres, in the axes of this link?",
+        answers.arm, answers.carrier));
+  }
   throw InputError(
       fmt::format("--target: {} shows no joint offset of arm '{}'; with --target tool, a tip alone "
                   "is found",
@@ -523,6 +585,31 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
   return plan;
 }
 
+/// Both hands hold one rigid thing: the pose of one in the other stays.
+[[nodiscard]] InitPlan plan_grip(const Robot& robot, const InitAnswers& answers) {
+  InitPlan plan;
+  add_chain_model(plan, "One hand: its link.", holder_of(answers), answers.arm);
+  add_chain_model(plan, "The other hand, in which the first always has the same pose.",
+                  tracker_of(answers), answers.carrier);
+  for (InitEntry& model : plan.models) model.fields.front().second = "chain6d";
+  free_touched_offsets(plan, robot, answers);
+  free_places(plan, answers);
+  add_initial_value(plan, answers.places.front(),
+                    "Zeros are no guess: kinecal searches for what the URDF does not have.");
+  plan.error_blocks.push_back(
+      {"Both hands hold the same thing in every sample.  One over the accuracies of a pose of one "
+       "hand in the other, which decide how distances weigh against angles: 1 mm and 2 mrad are a "
+       "guess.  The noise is what residuals show.",
+       "contact",
+       {{"type", "pose_to_pose"},
+        {"model_a", name_to_yaml(holder_of(answers))},
+        {"model_b", name_to_yaml(tracker_of(answers))},
+        {"translation_scale", "1000.0"},
+        {"rotation_scale", "500.0"},
+        {"loss", "{type: huber, scale: 3.0}"}}});
+  return plan;
+}
+
 /// The tip of an arm touches something that stands still; nothing is measured but the joints.
 [[nodiscard]] InitPlan plan_touched(const Robot& robot, const InitAnswers& answers) {
   InitPlan plan;
@@ -535,6 +622,7 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
                     answers.carrier == answers.base ? "--base" : "--touched-link"));
   }
   if (target == InitTarget::gravity) return plan_gravity(robot, answers);
+  if (target == InitTarget::grip) return plan_grip(robot, answers);
   const bool is_link = robot.has_link(answers.target_frame);
   const std::string tip =
       is_link ? joint_of_tip(robot, answers.target_frame).name : answers.target_frame;
@@ -545,6 +633,10 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
           ? "The arm: the plane is at point (0, 0, distance) of frame " + answers.target_frame + "."
           : "The arm: the tip is point (0, 0, 0) of frame " + answers.target_frame + ".",
       holder_of(answers), answers.arm);
+  for (const FurtherArm& more : answers.more_arms) {
+    add_chain_model(plan, "A further arm, with its tip in frame " + more.target_frame + ".",
+                    more.arm, more.arm);
+  }
   add_chain_model(plan, "What it touches, which stands still in this link.", tracker_of(answers),
                   answers.carrier);
   if (is_pose) plan.models.back().fields.front().second = "chain6d";
@@ -569,15 +661,21 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
                       "link of a tip that is in it with --target-frame.",
         true);
   }
-  for (const std::string& place : answers.places) add_initial_value(plan, place, "");
-  plan.initial_values.front().why =
-      "Zeros are no guess: kinecal searches for what the URDF does not have.";
+  for (const FurtherArm& more : answers.more_arms) {
+    free_frame(plan, more.target_frame, "Where its tip is in link " + name_to_yaml(more.arm) + ".",
+               true);
+  }
+  for (const std::string& place : answers.places) {
+    if (!answers.at) add_initial_value(plan, place, "");
+  }
+  if (contact_of(target) == Contact::sphere && !answers.at) {
+    put(plan.initial_values.front(), (1e3 * answers.center).array().round() / 1e3);
+  }
   if (!is_link) add_initial_value(plan, tip, "");
-  if (contact_of(target) == Contact::sphere) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      plan.initial_values.front().fields[i].second =
-          fmt::format("{:.3f}", answers.center(static_cast<Eigen::Index>(i)));
-    }
+  for (const FurtherArm& more : answers.more_arms) add_initial_value(plan, more.target_frame, "");
+  if (!plan.initial_values.empty()) {
+    plan.initial_values.front().why =
+        "Zeros are no guess: kinecal searches for what the URDF does not have.";
   }
   InitEntry block{
       "The tip is there in every sample.  The noise is what residuals show.", "contact", {}};
@@ -602,7 +700,13 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
     }
   }
   block.fields.emplace_back("loss", "{type: huber, scale: 3.0}");
-  plan.error_blocks.push_back(std::move(block));
+  plan.error_blocks.push_back(block);
+  for (const FurtherArm& more : answers.more_arms) {
+    block.why.clear();
+    block.name = "contact_" + more.arm;
+    block.fields[1].second = name_to_yaml(more.arm);
+    plan.error_blocks.push_back(block);
+  }
   return plan;
 }
 
@@ -676,9 +780,10 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
 [[nodiscard]] InitPlan plan_initial_config(const Robot& robot, const InitAnswers& answers) {
   try {
     InitPlan plan;
-    if (answers.target == InitTarget::tracker) return plan_tracker(robot, answers);
     if (is_touched(answers.target)) return plan_touched(robot, answers);
-    if (answers.target == InitTarget::robot) {
+    if (answers.target == InitTarget::tracker) {
+      plan = plan_tracker(robot, answers);
+    } else if (answers.target == InitTarget::robot) {
       plan = plan_robot(robot, answers);
     } else if (answers.target == InitTarget::ground) {
       plan = plan_ground(robot, answers);
@@ -689,6 +794,10 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
     }
     if (answers.target == InitTarget::ground || answers.with_ground) {
       add_ground(plan, answers);
+    }
+    for (const std::string& stand : related_stands(robot, answers)) {
+      free_frame(plan, stand,
+                 "Where the robot stands.  Where the URDF has zeros, kinecal searches for it.");
     }
     return plan;
   } catch (const RobotError& e) {
@@ -748,6 +857,7 @@ void relate_once(const Robot& robot, const InitAnswers& answers, Related& relate
     add_new(plan.models, std::move(one.models));
     add_new(plan.free_params, std::move(one.free_params));
     add_new(plan.free_frames, std::move(one.free_frames));
+    add_new(plan.fixed_frames, std::move(one.fixed_frames));
     add_new(plan.initial_values, std::move(one.initial_values));
     add_new(plan.error_blocks, std::move(one.error_blocks));
     for (InitLeftOut& left_out : one.left_out) {
@@ -817,6 +927,16 @@ void check_answers(const Robot& robot, const InitAnswers& answers) {
     check_init_frame(robot, "--target", place, diagnostics);
   }
   if (is_touched(target)) check_init_link(robot, "--touched-link", answers.carrier, diagnostics);
+  if (answers.at) check_init_place(target, *answers.at, diagnostics);
+  if (answers.at && target == InitTarget::sockets && answers.layout.empty()) {
+    diagnostics.error({"--touched-at", 0},
+                      "of several sockets, sockets.csv beside the configuration says where each is "
+                      "(socket, x, y, z in metres), seen from this place");
+  }
+  for (const FurtherArm& more : answers.more_arms) {
+    check_init_link(robot, "--arm", more.arm, diagnostics);
+    check_init_frame(robot, "--target-frame", more.target_frame, diagnostics);
+  }
   if (answers.length) check_init_length(target, *answers.length, diagnostics);
   const bool floor = target == InitTarget::ground || answers.with_ground;
   if (floor && !needs_camera(target)) {
@@ -862,6 +982,18 @@ void check_init_length(InitTarget target, double length, Diagnostics& diagnostic
         fmt::format("{} has no length; sockets, sphere and bar have one", to_string(target)));
   } else if (!(length > 0.0 && length < kMost)) {
     diagnostics.error({"--length", 0}, fmt::format("{} is no length in metres", length));
+  }
+}
+
+void check_init_place(InitTarget target, const Vector3<double>& at, Diagnostics& diagnostics) {
+  constexpr double kMost = 10.0;  // metres
+  if (!has_place(target)) {
+    diagnostics.error({"--touched-at", 0},
+                      fmt::format("{} is not at one point; point, sockets, sphere and bar are",
+                                  to_string(target)));
+  } else if (!(at.cwiseAbs().maxCoeff() < kMost)) {
+    diagnostics.error({"--touched-at", 0},
+                      fmt::format("{},{},{} is no place in metres", at.x(), at.y(), at.z()));
   }
 }
 
@@ -959,6 +1091,8 @@ namespace {
                        "Frames to calibrate, by the names of their joints: how a part is mounted "
                        "on the one before it.  Free one rotation or all three.",
                        plan.free_frames, true);
+  text += list_to_yaml("fixed_frames", "Frames that the URDF does not contain, at known poses.",
+                       plan.fixed_frames, true);
   text += list_to_yaml("free_frames_initial_values",
                        "Where the search starts, for frames that the URDF does not contain.",
                        plan.initial_values, true);

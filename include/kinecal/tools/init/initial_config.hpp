@@ -27,6 +27,10 @@ void check_init_frame(const Robot& robot, const std::string& option, const std::
 /// @param length  metres
 void check_init_length(InitTarget target, double length, Diagnostics& diagnostics);
 
+/// Reports a known place that a target does not have, or that is none.
+/// @param at  metres
+void check_init_place(InitTarget target, const Vector3<double>& at, Diagnostics& diagnostics);
+
 /// Reports a camera name that another model already has.
 void check_init_camera_name(const std::string& option, const std::string& name,
                             Diagnostics& diagnostics);

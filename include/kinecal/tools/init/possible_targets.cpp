@@ -47,6 +47,11 @@ std::string why_no_target(const Robot& robot, InitTarget target, const std::stri
     return "--target: no link of the URDF looks like a camera; add it to the URDF, or give "
            "--camera LINK";
   }
+  if (target == InitTarget::grip && arm.empty() && propose_arms(robot).size() < 2) {
+    return "--target: grip is of two hands that hold one thing, and the URDF does not look like "
+           "two "
+           "arms; give their links: --arm LINK --touched-link LINK";
+  }
   if (!needs_arm(target) || !needs_camera(target)) return "";
   const std::string advice =
       " moves with the arm and sees the same in every pose; let it see a board in the world: "

@@ -509,6 +509,9 @@ struct PointColumns {
 
 // Tables of a tip that touches something: joints, and which socket.
 
+/// The line of a columns.yaml that says for which target it is.
+constexpr const char* kTargetMark = "# Target: ";
+
 /// The sockets that a column names, each once.
 [[nodiscard]] std::set<std::string> sockets_in(const ReadTable& table, int column) {
   const std::vector<std::string>& texts = table.columns[static_cast<std::size_t>(column)].texts;
@@ -606,9 +609,12 @@ struct PointColumns {
         column_name(table, read[0]), column_name(table, read[1]), column_name(table, read[2]),
         holder_of(answers), answers.target_frame);
   }
-  const bool is_pose =
-      target == InitTarget::plane || target == InitTarget::line || target == InitTarget::distance;
-  std::string tip = "   constant: [0, 0, 0]\n";
+  const bool is_grip = target == InitTarget::grip;
+  const bool is_pose = is_grip || target == InitTarget::plane || target == InitTarget::line ||
+                       target == InitTarget::distance;
+  constexpr const char* kPose =
+      "   form: quaternion\n   constant_poses: [[0, 0, 0, 0, 0, 0, 1]]  # ";
+  std::string tip = is_grip ? std::string(kPose) + "the link itself\n" : "   constant: [0, 0, 0]\n";
   if (target == InitTarget::distance) {
     const int column = distance_column(table);
     if (column < 0) {
@@ -623,9 +629,10 @@ struct PointColumns {
   }
   std::string touched = "   frame: " + answers.places.front() + "\n";
   if (is_pose) {
-    touched +=
-        fmt::format("   form: quaternion\n   constant_poses: [[0, 0, 0, 0, 0, 0, 1]]  # {}\n",
-                    target == InitTarget::plane ? "the plane z = 0" : "the z axis");
+    touched += fmt::format("{}{}\n", kPose,
+                           is_grip                      ? "where the other hand has it"
+                           : target == InitTarget::line ? "the z axis"
+                                                        : "the plane z = 0");
   } else if (target != InitTarget::sockets) {
     touched += "   constant: [0, 0, 0]\n";
   } else {
@@ -648,13 +655,22 @@ struct PointColumns {
                         answers.places.front(), name_to_yaml(sockets_file), name);
   }
   return fmt::format(
-      "\nobservations:\n - sensor: {}  # the tip, which is there in every row\n   frame: {}\n"
-      "{} - sensor: {}  # what it touches\n{}",
-      holder_of(answers), answers.target_frame, tip, tracker_of(answers), touched);
+      "\nobservations:\n - sensor: {}  # {}, which is there in every row\n   frame: {}\n"
+      "{} - sensor: {}  # {}\n{}",
+      holder_of(answers), is_grip ? "one hand" : "the tip", answers.target_frame, tip,
+      tracker_of(answers), is_grip ? "the other hand" : "what it touches", touched);
 }
 
 }  // namespace
 }  // namespace detail
+
+std::optional<InitTarget> target_of_columns(std::string_view text) {
+  const std::size_t at = text.find(detail::kTargetMark);
+  if (!text.starts_with(kProposedColumnsMark) || at == std::string_view::npos) return std::nullopt;
+  const std::string_view rest = text.substr(at + std::string_view(detail::kTargetMark).size());
+  const auto known = init_target(rest.substr(0, rest.find('\n')));
+  return known ? std::optional(known->target) : std::nullopt;
+}
 
 std::string sockets_at_distance(std::string_view text, const std::string& file, double length) {
   using namespace detail;
@@ -712,10 +728,11 @@ std::string proposed_columns(const Robot& robot, std::string_view text, const st
   const std::string turning = joints_text(robot, table, joints, true),
                     sliding = joints_text(robot, table, joints, false);
   return fmt::format(
-             "{} by the table's {}: check it.\n"
+             "{} by the table's {}: check it.\n{}"
              "separator: {}\nheader: {}\n",
              kProposedColumnsMark,
              table.header ? "header and values" : "number of columns and values",
+             touched ? fmt::format("{}{}\n", kTargetMark, to_string(*touched)) : "",
              separators.at(table.separator), table.header) +
          turning + sliding + velocities_text(robot, table, velocities, true, turning) +
          velocities_text(robot, table, velocities, false, sliding) +

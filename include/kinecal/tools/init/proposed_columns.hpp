@@ -27,13 +27,16 @@ inline constexpr const char* kProposedColumnsMark = "# Columns for 'kinecal init
 /// @param file   its name, in messages
 /// @param target  what the tip touches, or a tracker; nullopt: by the columns
 /// @param sockets_file  of sockets with known places, with the columns socket, x, y, z in metres; empty: not known
-/// @param tip           frame of the tip, or the link that it is; empty: proposed
+/// @param tip           frame of the tip, or the link that it is; of hands that hold one thing, one of their links; empty: proposed
 /// @throws InputError  "file: ...": what neither names nor values tell
 [[nodiscard]] std::string proposed_columns(const Robot& robot, std::string_view table,
                                            const std::string& file,
                                            std::optional<InitTarget> target = {},
                                            const std::string& sockets_file = {},
                                            const std::string& tip = {});
+
+/// The target for which proposed_columns() wrote a columns.yaml; nullopt: a tracker, or it is not of these.
+[[nodiscard]] std::optional<InitTarget> target_of_columns(std::string_view text);
 
 /// The table of two sockets whose distance is known, for a table of joints that names the one of each row.
 /// @param length  metres

@@ -188,6 +188,15 @@ std::string propose_frame(const Robot& robot, std::vector<std::string> names) {
   }
 }
 
+std::string joint_above(const Robot& robot, const std::string& link,
+                        const std::vector<std::string>& joints) {
+  if (!robot.has_link(link)) return "";
+  const Joint* above = robot.parent_joint(link);
+  while (above != nullptr && std::find(joints.begin(), joints.end(), above->name) == joints.end())
+    above = robot.parent_joint(above->parent);
+  return above == nullptr ? "" : above->name;
+}
+
 InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
   const auto propose = [](std::string& answer, const std::string& proposal) {
     if (answer.empty()) answer = proposal;
@@ -196,13 +205,21 @@ InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
   if (is_touched(target) && robot.has_link(answers.target_frame)) {
     propose(answers.arm, answers.target_frame);
   }
+  if (target == InitTarget::grip) {
+    std::vector<std::string> hands = propose_arms(robot);
+    std::erase(hands, answers.carrier);
+    if (!hands.empty()) propose(answers.arm, hands.front());
+    std::erase(hands, answers.arm);
+    if (hands.size() == 1) propose(answers.carrier, hands.front());
+    propose(answers.target_frame, answers.arm);
+  }
   const std::string& end = needs_arm(target) ? answers.arm : answers.camera;
   if (robot.has_link(end)) propose(answers.base, propose_base(robot, end));
   if (target == InitTarget::tracker) {
     propose(answers.target_frame, propose_frame(robot, {"smr", "reflector"}));
     propose(answers.tracker_frame, propose_frame(robot, {"tracker_frame", "laser_frame"}));
   } else if (is_touched(target)) {
-    propose(answers.carrier, answers.base);
+    if (target != InitTarget::grip) propose(answers.carrier, answers.base);
     propose(answers.target_frame,
             target == InitTarget::gravity    ? propose_frame(robot, {"accelerometer"})
             : target == InitTarget::distance ? propose_frame(robot, {"gauge", "distance_sensor"})
@@ -219,6 +236,7 @@ InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
     const char* own = is_plane                        ? "plane"
                       : target == InitTarget::line    ? "line"
                       : target == InitTarget::sockets ? "sockets"
+                      : target == InitTarget::grip    ? "grip"
                       : has_length(target)            ? "center"
                                                       : "place";
     answers.places = {propose_frame(robot, {own, std::string("touched_") + own})};

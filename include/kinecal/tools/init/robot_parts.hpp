@@ -24,6 +24,10 @@ namespace kinecal {
 /// @throws RobotError  if there is no such link
 [[nodiscard]] std::string propose_base(const Robot& robot, const std::string& link);
 
+/// The one of some joints that is between a link and the root; empty if none is, or there is no such link.
+[[nodiscard]] std::string joint_above(const Robot& robot, const std::string& link,
+                                      const std::vector<std::string>& joints);
+
 /// True if a frame outside the URDF may have this name: no link has it, and no joint has it or a
 /// similar one.
 [[nodiscard]] bool is_free_frame_name(const Robot& robot, const std::string& name);

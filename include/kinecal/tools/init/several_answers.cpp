@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "kinecal/files/diagnostics.hpp"
+#include "kinecal/text/nearest_name.hpp"
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/possible_targets.hpp"
 #include "kinecal/tools/init/robot_parts.hpp"
@@ -81,6 +82,19 @@ struct NamedSensors {
   return found;
 }
 
+/// @throws InputError  if a sensor holds a target and no link has its name, where those of others are links
+void check_holders(const Robot& robot, const std::vector<std::string>& chains) {
+  const auto link = std::find_if(chains.begin(), chains.end(),
+                                 [&](const std::string& name) { return robot.has_link(name); });
+  if (link == chains.end()) return;
+  for (const std::string& name : chains) {
+    if (robot.has_link(name) || name == "arm" || name == "board") continue;
+    throw InputError(fmt::format(
+        "--from: '{}' holds a target, as '{}' does, and is no link of the URDF of '{}'{}", name,
+        *link, robot.name(), did_you_mean(name, robot.link_names())));
+  }
+}
+
 /// @throws InputError  if two sensors hold targets whose points are in one frame
 void check_frames_of(const std::vector<InitAnswers>& all) {
   std::map<std::string, std::string> holder;
@@ -96,6 +110,27 @@ void check_frames_of(const std::vector<InitAnswers>& all) {
   }
 }
 
+/// Several arms that touch the same points or sockets.
+/// @throws InputError  if the target is of one arm
+[[nodiscard]] InitAnswers together(const Robot& robot, InitAnswers answers,
+                                   const std::vector<std::string>& arms) {
+  if (answers.target != InitTarget::point && answers.target != InitTarget::sockets) {
+    throw InputError(fmt::format(
+        "--arm: '{}' is of one arm; make a configuration for each.  What relates two arms: points "
+        "or sockets that both touch (--target point, --target sockets), a thing that both hold "
+        "(--target grip), or a cone in one hand for the tip of the other (--target point --arm {} "
+        "--touched-link {})",
+        to_string(answers.target, answers.board), arms[0], arms[1]));
+  }
+  answers.arm = answers.holder = arms.front();
+  answers.target_frame.clear();
+  const std::string tip = with_proposals(robot, answers).target_frame;
+  answers.target_frame = arms.front() + "_" + tip;
+  for (std::size_t i = 1; i < arms.size(); ++i)
+    answers.more_arms.push_back({arms[i], arms[i] + "_" + tip});
+  return answers;
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -105,8 +140,7 @@ std::vector<InitAnswers> answers_of_all(const Robot& robot, const InitAnswers& g
   detail::check_once(arms, "--arm");
   detail::check_once(cameras, "--camera");
   if (arms.size() > 1 && is_touched(given.target)) {
-    throw InputError(fmt::format("--arm: '{}' is of one arm; make a configuration for each",
-                                 to_string(given.target, given.board)));
+    return {detail::together(robot, given, arms)};
   }
   const std::vector<std::string> none = {""};
   const auto &of_arms = arms.empty() ? none : arms, &of_cameras = cameras.empty() ? none : cameras;
@@ -155,6 +189,7 @@ std::vector<InitAnswers> all_answers_from_samples(const Robot& robot,
                     "the frames of cameras as the links of the URDF are named",
                     option));
   }
+  detail::check_holders(robot, sensors.chains);
   std::vector<InitAnswers> all;
   for (const std::string& camera : sensors.cameras) {
     const std::size_t before = all.size();
@@ -177,6 +212,30 @@ std::vector<InitAnswers> all_answers_from_samples(const Robot& robot,
     if (answers.base.empty()) answers.base = with_proposals(robot, all.front()).base;
   }
   return all;
+}
+
+void relate_stands(const Robot& robot, const std::vector<std::string>& stands,
+                   std::vector<InitAnswers>& all) {
+  if (stands.size() < 2) return;
+  std::map<std::string, std::string> groups = {{"", ""}};  // of stands; "" is the world
+  for (const std::string& stand : stands) groups[stand] = stand;
+  for (InitAnswers& answers : all) {
+    const auto group = [&](const std::string& link) {
+      return groups.at(joint_above(robot, link.empty() ? answers.base : link, stands));
+    };
+    const std::string from = group(answers.arm), to = group(answers.camera);
+    for (auto& [stand, of] : groups) {
+      if (of == from) of = to;
+    }
+    answers.stands.assign(stands.begin() + 1, stands.end());
+  }
+  for (const std::string& stand : stands) {
+    if (groups.at(stand) == groups.at(stands.front())) continue;
+    throw InputError(fmt::format(
+        "--urdf: nothing says where the robot on '{}' stands: no --camera and --arm, or board in "
+        "the world, relates it to the others; let a camera of one robot see the arm of the other",
+        stand));
+  }
 }
 
 std::string pairs_text(const std::vector<InitAnswers>& all) {

@@ -24,10 +24,16 @@ namespace kinecal {
 
 /// Answers from samples, as answers_from_samples(): for each camera with each sensor whose points it sees.
 /// @param given  of one camera: arm, camera and names that are not empty are kept; of several: only the base
-/// @throws InputError  as answers_from_samples(); also if two targets have one frame
+/// @throws InputError  as answers_from_samples(); also if two targets have one frame, or one of several arms is not in the URDF
 [[nodiscard]] std::vector<InitAnswers> all_answers_from_samples(const Robot& robot,
                                                                 std::span<const Sample> samples,
                                                                 const InitAnswers& given);
+
+/// Lets the answers find where robots stand: all but the first, which stands where the URDF has it.
+/// @param stands  their joints, as stand_joint() names them
+/// @throws InputError  if no answer relates a robot to the first, by others or itself
+void relate_stands(const Robot& robot, const std::vector<std::string>& stands,
+                   std::vector<InitAnswers>& all);
 
 /// "left_eye sees right_hand; right_eye sees left_hand"; without a camera, the arms.
 [[nodiscard]] std::string pairs_text(const std::vector<InitAnswers>& all);

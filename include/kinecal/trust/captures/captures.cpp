@@ -70,7 +70,7 @@ namespace {
 /// Leave-one-out influence of each sample, by down-dating: without its rows J_s the coordinates
 /// move by H^-1 J_s^T (1 - J_s H^-1 J_s^T)^-1 r_s = (H - J_s^T J_s)^-1 J_s^T r_s; the smaller of the two systems is solved.
 void set_influences(const LinearFit& fit, std::vector<CaptureError>& captures) {
-  const Eigen::MatrixXd hessian = information(fit, fit.loss);
+  const Eigen::MatrixXd& hessian = fit.hessian;
   const Eigen::MatrixXd inverse = Spectrum(hessian).pseudo_inverse();
   const double n = std::max<double>(1.0, static_cast<double>(fit.size()));
   const double rows = std::max(1.0, static_cast<double>(fit.residual.size()) - n);
@@ -81,15 +81,18 @@ void set_influences(const LinearFit& fit, std::vector<CaptureError>& captures) {
     while (end < fit.blocks.size() && fit.blocks[end].sample == fit.blocks[b].sample) {
       size += fit.blocks[end++].size;
     }
-    const Eigen::Index first = fit.blocks[b].first;  // the blocks of a sample are consecutive
-    const Eigen::VectorXd root = fit.loss.segment(first, size).cwiseSqrt();
-    const Eigen::MatrixXd j = root.asDiagonal() * fit.jacobian.middleRows(first, size);
-    const Eigen::VectorXd r = root.cwiseProduct(fit.residual.segment(first, size));
     Eigen::VectorXd step;
     if (fit.size() > 0 && size > fit.size()) {
-      const Eigen::MatrixXd left = hessian - j.transpose() * j;
-      step = left.fullPivLu().solve(j.transpose() * r);
+      RowSums own(fit.size());
+      for (std::size_t i = b; i < end; ++i) {
+        own += row_sums(fit, fit.blocks[i], fit.loss, fit.residual);
+      }
+      step = (hessian - own.information).fullPivLu().solve(own.gradient);
     } else {
+      const Eigen::Index first = fit.blocks[b].first;  // the blocks of a sample are consecutive
+      const Eigen::VectorXd root = fit.loss.segment(first, size).cwiseSqrt();
+      const Eigen::MatrixXd j = root.asDiagonal() * fit.jacobian.middleRows(first, size);
+      const Eigen::VectorXd r = root.cwiseProduct(fit.residual.segment(first, size));
       const Eigen::MatrixXd left =
           Eigen::MatrixXd::Identity(size, size) - j * inverse * j.transpose();
       step = inverse * (j.transpose() * left.fullPivLu().solve(r));
@@ -206,10 +209,17 @@ class CaptureSearch {
   [[nodiscard]] double sigma_of(const FeatureRows& f) const {
     return std::max(sigma_[static_cast<std::size_t>(f.term)], 1e-9);
   }
+  /// Sets the leverage of each row in the present fit.
+  void set_leverages() {
+    leverage_.resize(fit_.residual.size());
+    for (const RowBlock& block : fit_.blocks) {
+      const auto j = fit_.jacobian.middleRows(block.first, block.size);
+      leverage_.segment(block.first, block.size) = (j * inverse_).cwiseProduct(j).rowwise().sum();
+    }
+  }
   /// Distance of this feature in standard deviations.
   [[nodiscard]] double times(const FeatureRows& f) const {
-    const auto j = fit_.jacobian.middleRows(f.row, f.size);
-    const double leverage = std::min(0.99, (j * inverse_).cwiseProduct(j).sum() / f.size);
+    const double leverage = std::min(0.99, leverage_.segment(f.row, f.size).mean());
     const double used = fit_.used.segment(f.row, f.size).mean();
     const bool in = !bad_[static_cast<std::size_t>(f.sample)];
     const double variance = 1.0 - used + (in ? -leverage : leverage);
@@ -220,6 +230,7 @@ class CaptureSearch {
 
   void mark(Tail tail = Tail::normal) {
     if (features_.empty()) return;
+    set_leverages();
     constexpr double kFalse = 1e-3, kEfficiency = 0.37;  // share of false alarms; of the median
     const double rows = static_cast<double>(fit_.residual.size());
     const double b = std::max(2.0, kEfficiency * rows * freedom(rows) / poses_.readings());
@@ -277,6 +288,7 @@ class CaptureSearch {
   std::vector<double> limit_;  ///< of `times`, by term
   Eigen::VectorXd residual_;   ///< of the present fit
   Eigen::MatrixXd inverse_;    ///< of its information
+  Eigen::VectorXd leverage_;   ///< of each row, at the last mark()
 };
 
 }  // namespace

@@ -31,11 +31,9 @@ class PoseSums {
     for (const RowBlock& block : fit.blocks) {
       const int pose = poses.of_sample[static_cast<std::size_t>(block.sample)];
       Sums& of = all_[static_cast<std::size_t>(pose)];
-      const auto j = fit.jacobian.middleRows(block.first, block.size);
       const auto w = fit.loss.segment(block.first, block.size);
       const auto r = fit.residual.segment(block.first, block.size);
-      of.information.noalias() += j.transpose() * w.asDiagonal() * j;
-      of.gradient.noalias() += j.transpose() * w.cwiseProduct(r);
+      of += row_sums(fit, block, fit.loss, fit.residual);
       of.squares += w.dot(r.cwiseAbs2());
       of.rows += static_cast<double>(block.size);
     }
@@ -44,7 +42,8 @@ class PoseSums {
     }
     // Keeps steps of few poses finite, and moves nothing that all determine.
     constexpr double kRidge = 1e-6;
-    ridge_ = kRidge * information(fit, fit.loss);
+    ridge_ = kRidge * fit.prior_hessian;
+    for (const Sums& of : all_) ridge_ += kRidge * of.information;
     ridge_.diagonal().array() +=
         1e-12 * ridge_.trace() / std::max(1.0, static_cast<double>(fit.size()));
   }
@@ -76,13 +75,9 @@ class PoseSums {
   }
 
  private:
-  struct Sums {
-    Eigen::MatrixXd information;
-    Eigen::VectorXd gradient;
+  struct Sums : RowSums {
+    using RowSums::RowSums;
     double squares = 0.0, rows = 0.0;
-
-    explicit Sums(Eigen::Index n)
-        : information(Eigen::MatrixXd::Zero(n, n)), gradient(Eigen::VectorXd::Zero(n)) {}
   };
   std::vector<Sums> all_;
   std::vector<std::size_t> measured_;

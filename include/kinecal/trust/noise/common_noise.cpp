@@ -156,16 +156,16 @@ class PoseFit {
     }
     return sums;
   }
-  /// Divides the rows of an error block.
-  void divide(int term, double by) {
+  /// Divides the rows of each error block.
+  void divide(const std::vector<double>& by) {
     for (const RowBlock& block : fit_.blocks) {
-      if (block.term == term) scale(block, 1.0 / by);
+      scale(block, 1.0 / by[static_cast<std::size_t>(block.term)]);
     }
-    update();
   }
   /// Sets what poses share.
   /// @returns  variance of the features' own noise: one if it is known
-  [[nodiscard]] double estimate(bool own_is_known, CommonNoise& common) const {
+  [[nodiscard]] double estimate(bool own_is_known, CommonNoise& common) {
+    update();
     const SharedVariances variances(pose_sums(), own_is_known);
     const Eigen::Vector4d found = variances.found();
     common.freedom = variances.freedom();
@@ -206,7 +206,7 @@ class PoseFit {
     std::vector<Eigen::MatrixXd> slopes;  // U^T J
     PoseSums::Parts sums;                 // J^T S J
     sums.fill(Eigen::MatrixXd::Zero(jacobian_.cols(), jacobian_.cols()));
-    sums[0] = jacobian_.transpose() * jacobian_ + priors_;
+    sums[0] = information_;
     for (const auto& pose : poses_) {
       const auto rows = rows_of(fit_, pose);
       const SharedAxes axes = axes_of(rows);
@@ -238,8 +238,10 @@ class PoseFit {
     jacobian_.middleRows(block.first, block.size) *= by;
     effects_.middleRows(block.first, block.size) *= by;
   }
+  /// After divide().
   void update() {
-    inverse_ = Spectrum(jacobian_.transpose() * jacobian_ + priors_).pseudo_inverse();
+    information_ = jacobian_.transpose() * jacobian_ + priors_;
+    inverse_ = Spectrum(information_).pseudo_inverse();
   }
   [[nodiscard]] double leverage(const Eigen::MatrixXd& j) const {
     return (j * inverse_).cwiseProduct(j).sum();
@@ -252,7 +254,7 @@ class PoseFit {
   LinearFit::RowMajor jacobian_;
   Eigen::MatrixXd priors_;                       ///< Hessian of the priors
   std::vector<std::vector<std::size_t>> poses_;  ///< blocks of each pose
-  Eigen::MatrixXd inverse_;
+  Eigen::MatrixXd information_, inverse_;
 };
 
 }  // namespace
@@ -267,6 +269,7 @@ CommonNoise common_noise(const LinearFit& fit, const Eigen::MatrixXd& effects,
   detail::PoseFit rows(effects, fit, poses, noise);
   const auto outside = rows.outside(noise.size());
   constexpr double kEnough = 5.0;
+  std::vector<double> by(noise.size(), 1.0);
   for (std::size_t t = 0; t < noise.size(); ++t) {
     const auto& [squares, freedom] = outside[t];
     if (freedom < kEnough || !(squares > 0.0)) continue;
@@ -274,8 +277,9 @@ CommonNoise common_noise(const LinearFit& fit, const Eigen::MatrixXd& effects,
     const double own = std::sqrt(squares / freedom);
     noise[t].own = own * noise[t].sigma;
     noise[t].own_freedom = freedom;
-    rows.divide(static_cast<int>(t), own);
+    by[t] = own;
   }
+  rows.divide(by);
   const double left = rows.estimate(common.separable, common);
   for (std::size_t t = 0; t < noise.size(); ++t) {
     const double before = noise[t].own_or_all();
@@ -286,8 +290,9 @@ CommonNoise common_noise(const LinearFit& fit, const Eigen::MatrixXd& effects,
       noise[t].own = std::sqrt(left) * noise[t].sigma;
       noise[t].own_freedom = noise[t].freedom;
     }
-    rows.divide(static_cast<int>(t), noise[t].own_or_all() / before);
+    by[t] = noise[t].own_or_all() / before;
   }
+  rows.divide(by);
   rows.compare(common);
   return common;
 }

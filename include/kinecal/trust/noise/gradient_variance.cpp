@@ -37,8 +37,7 @@ struct GradientSums {
   Eigen::MatrixXd influence;            ///< (free x coordinates) of a gradient on each parameter
   Eigen::VectorXd together;             ///< gradient of all features of a group
   Eigen::MatrixXd share;                ///< of the group in the information
-  Eigen::VectorXd of_parameters;        ///< (free) of the group in the variance of each parameter
-  Eigen::VectorXd sum, squares;         ///< (free) of those shares, over all groups
+  Eigen::VectorXd sum, squares;         ///< (free) of shares in the variance of each parameter
   std::vector<Eigen::VectorXd> groups;  ///< x of each group
   double of_features = 0.0;             ///< squares of the gradients of single features
   double chance = 0.0;  ///< variance of trace S if features err independently, relative
@@ -47,9 +46,8 @@ struct GradientSums {
       : influence(std::move(of)),
         together(Eigen::VectorXd::Zero(influence.cols())),
         share(Eigen::MatrixXd::Zero(influence.cols(), influence.cols())),
-        of_parameters(Eigen::VectorXd::Zero(influence.rows())),
-        sum(of_parameters),
-        squares(of_parameters) {}
+        sum(Eigen::VectorXd::Zero(influence.rows())),
+        squares(sum) {}
 
   /// @param rows  derivatives of a block's residuals, in whitened coordinates
   /// @param size  residuals of a feature
@@ -63,17 +61,17 @@ struct GradientSums {
     }
     together.noalias() += rows.transpose() * weighted;
     share.noalias() += rows.transpose() * loss.asDiagonal() * rows;
-    of_parameters.noalias() += (influence * rows.transpose()).cwiseAbs2() * loss;
   }
   /// Adds the group and starts another one.
   void end_group() {
     groups.push_back(restored(share, together));
     chance += 2.0 * share.squaredNorm();
+    const Eigen::VectorXd of_parameters =
+        (influence * share).cwiseProduct(influence).rowwise().sum().cwiseMax(0.0);
     sum += of_parameters;
     squares += of_parameters.cwiseAbs2();
     together.setZero();
     share.setZero();
-    of_parameters.setZero();
   }
   /// S.
   [[nodiscard]] Eigen::MatrixXd scatter() const {
@@ -221,7 +219,7 @@ GradientVariance gradient_variance(const AnyProblem& problem, const LinearFit& f
                                    const Eigen::MatrixXd& independent,
                                    const Eigen::MatrixXd& of_priors) {
   const Eigen::Index n = fit.size();
-  const detail::Spectrum spectrum(information(fit, fit.loss));
+  const detail::Spectrum spectrum(fit.hessian);
   const Eigen::Index rank = n - spectrum.null;
   if (rank == 0) return {independent};
   const auto vectors = spectrum.vectors.rightCols(rank);

@@ -8,6 +8,8 @@
 
 #include "kinecal/geometry/eigenpairs.hpp"
 #include "kinecal/geometry/median.hpp"
+#include "kinecal/solve/spectrum.hpp"
+#include "kinecal/trust/inside_bounds.ipp"
 
 namespace kinecal {
 
@@ -130,6 +132,16 @@ std::vector<BlockNoise> estimate_noise(const AnyProblem& problem, const LinearFi
     detail::set_pose_errors(term, residuals, noise.back());
   }
   return noise;
+}
+
+std::vector<BlockNoise> noise_at(const AnyProblem& problem, const FreeSet& free,
+                                 ParameterValues values) {
+  std::vector<int> at_bound;
+  const FreeSet inside = detail::inside_bounds(problem, free, values, at_bound);
+  const auto evaluator = problem.evaluator(inside, 1);
+  const LinearFit fit =
+      linear_fit(*evaluator, values, determined_coordinates(problem, inside, values));
+  return estimate_noise(problem, fit, detail::Spectrum(fit.hessian).pseudo_inverse());
 }
 
 }  // namespace kinecal

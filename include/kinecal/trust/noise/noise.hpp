@@ -64,6 +64,12 @@ namespace detail {
                                                      const LinearFit& fit,
                                                      const Eigen::MatrixXd& inverse);
 
+/// The noise of each error block at a solution.
+/// @param values  of all parameters of the table
+/// @throws std::domain_error  if a residual is undefined there
+[[nodiscard]] std::vector<BlockNoise> noise_at(const AnyProblem& problem, const FreeSet& free,
+                                               ParameterValues values);
+
 /// Variance of the weighted residuals of priors: 1 if weights are one over standard deviations,
 /// else that of all error blocks.
 [[nodiscard]] double prior_variance(const std::vector<BlockNoise>& noise);

@@ -206,7 +206,7 @@ class Identification {
     const int n = all_.size();
     const Coordinates plain{Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd(n, 0),
                             Eigen::VectorXd::Zero(n), Eigen::VectorXd::Ones(n)};
-    LinearFit fit = linear_fit(*evaluator, values_, plain);
+    LinearFit fit = linear_rows(*evaluator, values_, plain);
     Eigen::VectorXd back = Eigen::VectorXd::Zero(n);
     for (const SearchCandidate& candidate : columns_) {
       for (const int c : candidate.columns) {

@@ -40,6 +40,14 @@ template <class Right>
   return scaled_solution(squared, scale, identity);
 }
 
+/// A change of some columns as one of all of them.
+[[nodiscard]] Eigen::VectorXd spread(const Eigen::VectorXd& change, const std::vector<int>& columns,
+                                     Eigen::Index all) {
+  Eigen::VectorXd of_all = Eigen::VectorXd::Zero(all);
+  of_all(columns) = change;
+  return of_all;
+}
+
 [[nodiscard]] std::vector<int> joined(std::vector<int> columns, const std::vector<int>& more) {
   columns.insert(columns.end(), more.begin(), more.end());
   return columns;
@@ -57,19 +65,12 @@ ParameterSearch::ParameterSearch(const LinearFit& fit, const SearchPoses& poses,
   residual_ = root.cwiseProduct(fit.residual);
   const auto rows = static_cast<std::size_t>(residual_.size());
   pose_.resize(rows);
-  std::vector<int> fold(rows), region(poses.region.empty() ? 0 : rows);
   for (const RowBlock& block : fit.blocks) {
-    const auto sample = static_cast<std::size_t>(block.sample);
-    for (Eigen::Index row = block.first; row < block.first + block.size; ++row) {
-      const auto r = static_cast<std::size_t>(row);
-      pose_[r] = poses.pose[sample];
-      fold[r] = poses.fold[sample];
-      if (!region.empty()) region[r] = poses.region[sample];
-      poses_ = std::max(poses_, pose_[r] + 1);
-    }
+    const int pose = poses.pose[static_cast<std::size_t>(block.sample)];
+    std::fill_n(pose_.begin() + block.first, block.size, pose);
+    poses_ = std::max(poses_, pose + 1);
   }
-  folds_ = parts(fold);
-  regions_ = parts(region);
+  set_parts(fit, poses);
   squared_ = fit.prior_hessian;
   gradient_ = fit.prior_gradient;
   for (const Part& part : folds_) {
@@ -79,26 +80,63 @@ ParameterSearch::ParameterSearch(const LinearFit& fit, const SearchPoses& poses,
   scale_ = squared_.diagonal().cwiseSqrt();
 }
 
-std::vector<ParameterSearch::Part> ParameterSearch::parts(const std::vector<int>& part) const {
-  std::vector<std::vector<int>> rows;
-  for (std::size_t row = 0; row < part.size(); ++row) {
-    const auto of = static_cast<std::size_t>(part[row]);
-    if (of >= rows.size()) rows.resize(of + 1);
-    rows[of].push_back(static_cast<int>(row));
+namespace detail {
+namespace {
+
+/// The number of parts.
+/// @param part  of each sample
+[[nodiscard]] std::size_t number_of(const std::vector<int>& part) {
+  return part.empty() ? 0
+                      : static_cast<std::size_t>(*std::max_element(part.begin(), part.end())) + 1;
+}
+
+}  // namespace
+}  // namespace detail
+
+void ParameterSearch::set_parts(const LinearFit& fit, const SearchPoses& poses) {
+  struct Parts {
+    const std::vector<int>& of_sample;
+    std::vector<Part>& all;
+    std::vector<std::vector<Eigen::Index>> rows;
+  };
+  std::vector<Parts> both;
+  both.push_back({poses.fold, folds_, {}});
+  both.push_back({poses.region, regions_, {}});
+  const Eigen::Index n = jacobian_.cols();
+  for (Parts& parts : both) {
+    parts.rows.resize(detail::number_of(parts.of_sample));
+    parts.all.resize(parts.rows.size());
+    for (Part& part : parts.all) {
+      part.squared = Eigen::MatrixXd::Zero(n, n);
+      part.gradient = Eigen::VectorXd::Zero(n);
+    }
   }
-  std::erase_if(rows, [](const std::vector<int>& of) { return of.empty(); });
-  std::vector<Part> all;
-  for (const std::vector<int>& of : rows) {
-    Part& one = all.emplace_back();
-    for (const int row : of) one.pose.push_back(pose_[static_cast<std::size_t>(row)]);
-    one.jacobian = jacobian_(of, Eigen::all);
-    one.residual = residual_(of);
-    Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
-    lower.selfadjointView<Eigen::Lower>().rankUpdate(one.jacobian.transpose());
-    one.squared = lower.selfadjointView<Eigen::Lower>();
-    one.gradient = one.jacobian.transpose() * one.residual;
+  for (const RowBlock& block : fit.blocks) {
+    const Eigen::MatrixXd all = jacobian_.middleRows(block.first, block.size);
+    const std::vector<int> columns = detail::nonzero_columns(all);
+    const Eigen::MatrixXd rows = all(Eigen::all, columns);
+    const Eigen::MatrixXd squared = rows.transpose() * rows;
+    const Eigen::VectorXd gradient = rows.transpose() * residual_.segment(block.first, block.size);
+    for (Parts& parts : both) {
+      if (parts.all.empty()) continue;
+      const auto of =
+          static_cast<std::size_t>(parts.of_sample[static_cast<std::size_t>(block.sample)]);
+      parts.all[of].squared(columns, columns) += squared;
+      parts.all[of].gradient(columns) += gradient;
+      for (Eigen::Index i = 0; i < block.size; ++i) parts.rows[of].push_back(block.first + i);
+    }
   }
-  return all;
+  for (Parts& parts : both) {
+    for (std::size_t i = 0; i < parts.all.size(); ++i) {
+      Part& part = parts.all[i];
+      part.jacobian = jacobian_(parts.rows[i], Eigen::all);
+      part.residual = residual_(parts.rows[i]);
+      for (const Eigen::Index row : parts.rows[i]) {
+        part.pose.push_back(pose_[static_cast<std::size_t>(row)]);
+      }
+    }
+    std::erase_if(parts.all, [](const Part& part) { return part.pose.empty(); });
+  }
 }
 
 std::vector<int> ParameterSearch::independent(const std::vector<int>& columns) const {
@@ -142,7 +180,7 @@ ParameterSearch::Whole ParameterSearch::whole_fit(const std::vector<int>& column
     whole.inverse = detail::scaled_inverse(squared_(columns, columns), scale_(columns));
     if (whole.inverse.size() == 0) return whole;
     whole.change = -whole.inverse * gradient_(columns);
-    whole.residual += jacobian_(Eigen::all, columns) * whole.change;
+    whole.residual += jacobian_ * detail::spread(whole.change, columns, jacobian_.cols());
   }
   whole.squares = whole.residual.squaredNorm();
   const double freedom = std::max(1.0, static_cast<double>(residual_.size() - std::ssize(columns)));
@@ -173,7 +211,7 @@ Eigen::VectorXd ParameterSearch::predicted(const std::vector<int>& columns,
       const Eigen::VectorXd change = detail::scaled_solution<Eigen::VectorXd>(
           squared - out.squared(columns, columns), scale, out.gradient(columns) - gradient);
       if (change.size() == 0) return {};
-      left += out.jacobian(Eigen::all, columns) * change;
+      left += out.jacobian * detail::spread(change, columns, out.jacobian.cols());
     }
     for (Eigen::Index i = 0; i < left.size(); ++i) {
       squares(out.pose[static_cast<std::size_t>(i)]) += left(i) * left(i);

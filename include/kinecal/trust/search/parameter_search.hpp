@@ -145,8 +145,8 @@ class ParameterSearch {
     Eigen::MatrixXd squared;   ///< J^T J
     Eigen::VectorXd gradient;  ///< J^T r
   };
-  /// @param part  of each row
-  [[nodiscard]] std::vector<Part> parts(const std::vector<int>& part) const;
+  /// Sets folds and regions.
+  void set_parts(const LinearFit& fit, const SearchPoses& poses);
   /// (poses) sum of squared weighted residuals, each pose predicted without its part; empty if undetermined.
   [[nodiscard]] Eigen::VectorXd predicted(const std::vector<int>& columns,
                                           const std::vector<Part>& parts) const;

@@ -29,12 +29,6 @@ struct Course {
   }
 };
 
-/// J^T W J of some rows.
-[[nodiscard]] inline Eigen::MatrixXd information_of(const LinearFit& fit, const RowBlock& block) {
-  const auto rows = fit.jacobian.middleRows(block.first, block.size);
-  return rows.transpose() * fit.loss.segment(block.first, block.size).asDiagonal() * rows;
-}
-
 /// J^T W r of some rows.
 [[nodiscard]] inline Eigen::VectorXd gradient_of(const LinearFit& fit, const RowBlock& block,
                                                  const Eigen::VectorXd& residual) {
@@ -69,7 +63,7 @@ class Courses {
     before_.assign(static_cast<std::size_t>(parts_) + 1, Eigen::MatrixXd::Zero(n, n));
     drift_ = drift_squared_ = Eigen::MatrixXd::Zero(n, n);
     for (const RowBlock& block : fit.blocks) {
-      const Eigen::MatrixXd information = information_of(fit, block);
+      const Eigen::MatrixXd information = row_sums(fit, block, fit.loss, fit.residual).information;
       before_[part_after(block)] += information;
       const double u = drift_of(block);
       drift_ += u * information;
@@ -179,7 +173,7 @@ struct Changing {
   const Eigen::MatrixXd& basis = fit.coordinates.basis;
   const Eigen::MatrixXd to_coordinates =
       least_norm_solution(basis, Eigen::MatrixXd::Identity(basis.rows(), basis.rows()));
-  const Eigen::MatrixXd all = information(fit, fit.loss);
+  const Eigen::MatrixXd& all = fit.hessian;
   for (Changing& one : changing) {
     one.by = to_coordinates(Eigen::all, one.columns);
     one.all = (one.by.transpose() * all * one.by).diagonal();
@@ -202,6 +196,14 @@ class ChangeTrials {
         samples_(fitted.problem.num_samples()),
         changing_(what_may_change(fitted.problem, fitted.free, fitted.fit)),
         courses_(fitted.fit, samples_) {
+    if (samples_ <= kMostSplit) {
+      of_samples_.assign(static_cast<std::size_t>(samples_), RowSums(fitted.fit.size()));
+      const Eigen::VectorXd none = Eigen::VectorXd::Zero(fitted.fit.residual.size());
+      for (const RowBlock& block : fitted.fit.blocks) {
+        of_samples_[static_cast<std::size_t>(block.sample)] +=
+            row_sums(fitted.fit, block, fitted.fit.loss, none);
+      }
+    }
     for (const Changing& one : changing_) {
       for (std::size_t i = 0; i < courses_.size(); ++i) {
         trials_.push_back({{.owner = one.owner, .course = courses_.course(i).kind},
@@ -229,10 +231,9 @@ class ChangeTrials {
   /// @param most  that is left of the noise
   [[nodiscard]] std::optional<SystematicError> mixture(const Eigen::VectorXd& residual,
                                                        double freedom, double most) const {
-    constexpr int kMostSplit = 300;  // samples
     if (samples_ > kMostSplit) return {};
     const double squares = fitted_.fit.loss.dot(residual.cwiseAbs2());
-    const std::vector<Rows> rows = rows_of_samples(residual);
+    const std::vector<RowSums> rows = sums_of_samples(residual);
     std::optional<SystematicError> best;
     for (const Changing& one : changing_) {
       const auto q = static_cast<double>(one.columns.size());
@@ -262,55 +263,44 @@ class ChangeTrials {
   }
 
  private:
-  /// J^T W J and J^T W r of a sample.
-  struct Rows {
-    Eigen::MatrixXd information;
-    Eigen::VectorXd gradient;
-  };
-
-  [[nodiscard]] std::vector<Rows> rows_of_samples(const Eigen::VectorXd& residual) const {
-    const LinearFit& fit = fitted_.fit;
-    const Rows none{Eigen::MatrixXd::Zero(fit.size(), fit.size()),
-                    Eigen::VectorXd::Zero(fit.size())};
-    std::vector<Rows> all(static_cast<std::size_t>(samples_), none);
-    for (const RowBlock& block : fit.blocks) {
-      Rows& rows = all[static_cast<std::size_t>(block.sample)];
-      rows.information += information_of(fit, block);
-      rows.gradient += gradient_of(fit, block, residual);
+  /// Sums of the rows of each sample.
+  [[nodiscard]] std::vector<RowSums> sums_of_samples(const Eigen::VectorXd& residual) const {
+    std::vector<RowSums> all = of_samples_;
+    for (const RowBlock& block : fitted_.fit.blocks) {
+      all[static_cast<std::size_t>(block.sample)].gradient +=
+          gradient_of(fitted_.fit, block, residual);
     }
     return all;
   }
   /// Splits samples in two: those that fit better with other parameters of an owner, fitted in turn with these
   /// parameters, from the direction in which the samples differ most.
-  [[nodiscard]] Mixture mixture_of(const std::vector<Rows>& all, const Changing& one) const {
+  [[nodiscard]] Mixture mixture_of(const std::vector<RowSums>& all, const Changing& one) const {
     constexpr int kRounds = 30;
     const Eigen::Index n = one.by.rows(), q = one.by.cols();
     const Eigen::VectorXd scale =
         one.all.unaryExpr([](double w) { return w > 0.0 ? 1.0 / std::sqrt(w) : 0.0; });
     Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(q, q);
-    for (const Rows& of : all) {
+    for (const RowSums& of : all) {
       const Eigen::VectorXd g = scale.cwiseProduct(one.by.transpose() * of.gradient);
       spread += g * g.transpose();
     }
     const Eigen::VectorXd most = eigenpairs(spread).vectors.col(q - 1);
     std::vector<char> changed;
-    for (const Rows& of : all) {
+    for (const RowSums& of : all) {
       changed.push_back(most.dot(scale.cwiseProduct(one.by.transpose() * of.gradient)) > 0.0 ? 1
                                                                                              : 0);
     }
     Mixture mixture;
     for (int round = 0; round < kRounds; ++round) {
-      Rows sums{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+      RowSums sums(n);
       for (std::size_t s = 0; s < all.size(); ++s) {
-        if (changed[s] == 0) continue;
-        sums.information += all[s].information;
-        sums.gradient += all[s].gradient;
+        if (changed[s] != 0) sums += all[s];
       }
       mixture.fall = one.added(sums.information, sums.information, inverse_)
                          .fall(one.by.transpose() * sums.gradient);
       const Eigen::VectorXd d = one.by * mixture.fall.change, others = mixture.fall.others;
       std::vector<char> better;
-      for (const Rows& of : all) {
+      for (const RowSums& of : all) {
         const Eigen::VectorXd moved = of.information * d;
         better.push_back(2.0 * (d.dot(of.gradient) + moved.dot(others)) + d.dot(moved) < 0.0 ? 1
                                                                                              : 0);
@@ -435,11 +425,15 @@ class ChangeTrials {
     }
   }
 
+  static constexpr int kMostSplit = 300;  // samples
+
   FittedSamples fitted_;
   const Eigen::MatrixXd& inverse_;
   int samples_;
   std::vector<Changing> changing_;
   Courses courses_;
+  std::vector<RowSums>
+      of_samples_;  ///< without gradients; empty where samples are too many to split
   std::vector<Trial> trials_;
 };
 

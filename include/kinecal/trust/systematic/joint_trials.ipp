@@ -165,16 +165,17 @@ struct JointTrack {
 class JointTrials {
  public:
   /// @param effects  (rows x joints) see joint_effects()
+  /// @param slopes   of the same samples
   JointTrials(const FittedSamples& fitted, const Eigen::MatrixXd& effects,
-              const Eigen::MatrixXd& inverse)
+              const Eigen::MatrixXd& inverse, MeasurementSlopes& slopes)
       : fitted_(fitted), inverse_(inverse) {
     add_joints(effects);
     for (const MountedSensor& sensor : fitted_.problem.sensors()) {
       const std::string& name = sensor.mount().name;
-      for (int axis = 0; axis < 3; ++axis) add_axes(name, {axis});
+      for (int axis = 0; axis < 3; ++axis) add_axes(slopes, name, {axis});
       if (sensor.sensor().delivers(Quantity::pixel)) continue;
-      add_axes(name, {0, 1, 2});
-      add_axes(name, {0, 1, 2}, mean_point(name));
+      add_axes(slopes, name, {0, 1, 2});
+      add_axes(slopes, name, {0, 1, 2}, mean_point(name));
     }
   }
 
@@ -235,13 +236,15 @@ class JointTrials {
       const double squares = fit.loss.dot(slope.cwiseAbs2()) * step * step / 12.0;
       if (squares > 0.0) rounded_.push_back({name, track.turns, step, squares});
       const bool is_free = fitted_.free.column(fitted_.problem.table().find(name)) >= 0;
-      const auto at = add_slope(slope);
+      std::vector<Tried> tried;
       for (const ErrorCourse course : {ErrorCourse::zero, ErrorCourse::gear, ErrorCourse::turn,
                                        ErrorCourse::backlash, ErrorCourse::sag}) {
         if (course == ErrorCourse::zero && is_free) continue;  // only a prior holds it
         const Eigen::MatrixXd u = course_of(course, track);
-        if (u.cols() > 0) add({.owner = name, .course = course}, at, u, said(u, track.turns));
+        if (u.cols() == 0) continue;
+        tried.push_back({{.owner = name, .course = course}, u, said(u, track.turns)});
       }
+      add(slope, std::move(tried));
       const Eigen::VectorXd to_go = course_of(ErrorCourse::lag, track).col(0);
       for (const RowBlock& block : fit.blocks) {
         lag.segment(block.first, block.size) +=
@@ -249,13 +252,13 @@ class JointTrials {
       }
     }
     if (lag.isZero(0.0)) return;
-    add({.owner = {}, .course = ErrorCourse::lag}, add_slope(lag), everywhere(),
-        [](const Fall& fall, SystematicError& error) {
-          constexpr double kMost = 0.35;  // of the way
-          error.size = fall.change(0);
-          error.text = text_of(error, true);
-          return std::abs(error.size) <= kMost;
-        });
+    const auto say = [](const Fall& fall, SystematicError& error) {
+      constexpr double kMost = 0.35;  // of the way
+      error.size = fall.change(0);
+      error.text = text_of(error, true);
+      return std::abs(error.size) <= kMost;
+    };
+    add(lag, {{{.owner = {}, .course = ErrorCourse::lag}, everywhere(), say}});
   }
   /// Sets size and text of a joint's error; false beyond what the linearization can say: mistakes have other names.
   /// @param u  (samples x columns) its course
@@ -291,58 +294,69 @@ class JointTrials {
   /// @param axes    of a sensor: one, or all: its scale
   /// @param center  stays where it is.  Far from the points, a free frame takes up nearly all of a scale, and what is
   ///                left looks like rounding
-  void add_axes(const std::string& sensor, const std::vector<int>& axes,
+  void add_axes(MeasurementSlopes& slopes, const std::string& sensor, const std::vector<int>& axes,
                 const Vector3<double>& center = Vector3<double>::Zero()) {
     constexpr double kStep = 1e-6;  // relative
-    const auto longer = [&](Sample& sample) {
-      for (Observation& seen : sample.observations) {
-        if (seen.sensor != sensor) continue;
-        for (Feature& feature : seen.features) {
-          for (const int axis : axes) {
-            feature.point(axis) += kStep * (feature.point(axis) - center(axis));
-          }
+    const auto is_off = [&](const Feature& feature) {
+      return std::any_of(axes.begin(), axes.end(),
+                         [&](int axis) { return feature.point(axis) != center(axis); });
+    };
+    const auto any_is_off = [&](const Sample& sample) {
+      const Observation* seen = sample.observation(sensor);
+      return seen != nullptr && std::any_of(seen->features.begin(), seen->features.end(), is_off);
+    };
+    if (std::none_of(fitted_.samples.begin(), fitted_.samples.end(), any_is_off)) return;
+    const auto longer = [&](Observation& seen) {
+      for (Feature& feature : seen.features) {
+        for (const int axis : axes) {
+          feature.point(axis) += kStep * (feature.point(axis) - center(axis));
         }
       }
     };
-    const Eigen::VectorXd slope = sample_slopes(fitted_, longer, kStep);
+    const Eigen::VectorXd slope = slopes(sensor, longer, kStep);
     if (slope.isZero(0.0)) return;
     const bool is_scale = axes.size() > 1;
     const std::string what =
         is_scale ? "points of '" + sensor + "'"
                  : std::string(1, "xyz"[axes.front()]) + " of sensor '" + sensor + "'";
-    add({.owner = sensor, .course = is_scale ? ErrorCourse::scale : ErrorCourse::axis},
-        add_slope(slope), everywhere(), [what](const Fall& fall, SystematicError& error) {
-          constexpr double kMost = 0.3;
-          error.size = fall.change(0);
-          error.text = "with the " + what + " multiplied by " + factor_text(1.0 + error.size);
-          return std::abs(error.size) <= kMost;
-        });
+    const auto say = [what](const Fall& fall, SystematicError& error) {
+      constexpr double kMost = 0.3;
+      error.size = fall.change(0);
+      error.text = "with the " + what + " multiplied by " + factor_text(1.0 + error.size);
+      return std::abs(error.size) <= kMost;
+    };
+    const ErrorCourse course = is_scale ? ErrorCourse::scale : ErrorCourse::axis;
+    add(slope, {{{.owner = sensor, .course = course}, everywhere(), say}});
   }
   [[nodiscard]] Eigen::MatrixXd everywhere() const { return Eigen::MatrixXd::Ones(samples(), 1); }
-  std::size_t add_slope(const Eigen::VectorXd& slope) {
-    slopes_.push_back(slope);
-    return slopes_.size() - 1;
-  }
-  /// @param u  (samples x columns) course of the error
-  void add(SystematicError error, std::size_t slope, const Eigen::MatrixXd& u,
-           std::function<bool(const Fall&, SystematicError&)> say) {
+  /// An error along a slope.
+  struct Tried {
+    SystematicError error;
+    Eigen::MatrixXd u;  ///< (samples x columns) its course
+    std::function<bool(const Fall&, SystematicError&)> say;
+  };
+  void add(const Eigen::VectorXd& slope, std::vector<Tried> tried) {
     const LinearFit& fit = fitted_.fit;
-    Eigen::VectorXd lengths = Eigen::VectorXd::Zero(samples());  // d^T W d
-    Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(u.cols(), fit.size());
+    Eigen::VectorXd lengths = Eigen::VectorXd::Zero(samples());                    // d^T W d
+    LinearFit::RowMajor cross = LinearFit::RowMajor::Zero(samples(), fit.size());  // d^T W J
     for (const RowBlock& block : fit.blocks) {
-      const auto d = slopes_[slope].segment(block.first, block.size);
+      const auto d = slope.segment(block.first, block.size);
       const Eigen::VectorXd w = d.cwiseProduct(fit.loss.segment(block.first, block.size));
       lengths(block.sample) += w.dot(d);
-      cross += u.row(block.sample).transpose() *
-               (w.transpose() * fit.jacobian.middleRows(block.first, block.size));
+      cross.row(block.sample) += w.transpose() * fit.jacobian.middleRows(block.first, block.size);
     }
-    const auto at = static_cast<Eigen::Index>(slope);
-    trials_.push_back({std::move(error),
-                       AddedColumns(u.transpose() * lengths.asDiagonal() * u, cross, inverse_),
-                       [u, at](const ResidualSums& sums) -> Eigen::VectorXd {
-                         return u.transpose() * sums.of_slopes.col(at);
-                       },
-                       std::move(say)});
+    const Eigen::Index at = std::ssize(slopes_);
+    slopes_.push_back(slope);
+    for (Tried& one : tried) {
+      const Eigen::MatrixXd& u = one.u;
+      trials_.push_back(
+          {std::move(one.error),
+           AddedColumns(u.transpose() * lengths.asDiagonal() * u, u.transpose() * cross, inverse_),
+           [u, at](const ResidualSums& sums) -> Eigen::VectorXd {
+             return u.transpose() * sums.of_slopes.col(at);
+           },
+           std::move(one.say)});
+    }
   }
 
   FittedSamples fitted_;

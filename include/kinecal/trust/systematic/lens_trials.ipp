@@ -176,15 +176,12 @@ class CameraPixels {
            std::string(number);
   }
 
-  /// Moves the pixels of a sample by a field of shifts.
-  void move(Sample& sample, Shift shift, double step) const {
-    for (Observation& seen : sample.observations) {
-      if (seen.sensor != name()) continue;
-      const Eigen::Vector2d at = center(seen);
-      for (Feature& feature : seen.features) {
-        const Eigen::Vector2d place = (feature.point.head<2>() - at) / radius_;
-        feature.point.head<2>() += step * shift(place);
-      }
+  /// Moves the pixels of an observation by a field of shifts.
+  void move(Observation& seen, Shift shift, double step) const {
+    const Eigen::Vector2d at = center(seen);
+    for (Feature& feature : seen.features) {
+      const Eigen::Vector2d place = (feature.point.head<2>() - at) / radius_;
+      feature.point.head<2>() += step * shift(place);
     }
   }
 
@@ -215,8 +212,8 @@ class CameraPixels {
 class LensColumn {
  public:
   LensColumn(const FittedSamples& fitted, const CameraPixels& camera,
-             const Eigen::MatrixXd& inverse)
-      : fitted_(fitted), camera_(camera), slope_(slope(lens_shift)) {
+             const Eigen::MatrixXd& inverse, MeasurementSlopes& slopes)
+      : fitted_(fitted), camera_(camera), slopes_(slopes), slope_(slope(lens_shift)) {
     const LinearFit& fit = fitted.fit;
     const Eigen::VectorXd weighted = fit.loss.cwiseProduct(slope_);
     length_ = weighted.dot(slope_);
@@ -264,12 +261,13 @@ class LensColumn {
   /// (rows) change of weighted residuals per pixel.
   [[nodiscard]] Eigen::VectorXd slope(Shift shift) const {
     constexpr double kStep = 1e-3;  // pixels
-    return sample_slopes(
-        fitted_, [&](Sample& sample) { camera_.move(sample, shift, kStep); }, kStep);
+    const auto move = [&](Observation& seen) { camera_.move(seen, shift, kStep); };
+    return slopes_(camera_.name(), move, kStep);
   }
 
   const FittedSamples& fitted_;
   const CameraPixels& camera_;
+  MeasurementSlopes& slopes_;
   Eigen::VectorXd slope_;
   double length_ = 0.0, gain_ = 0.0, farther_ = 0.0;
   double all_ = 0.0, own_ = 0.0;  ///< sums of squares of all residuals, of the camera's
@@ -277,16 +275,18 @@ class LensColumn {
 
 /// Cameras whose lens is not as it was taken.
 /// @param inverse  of J^T W J
+/// @param slopes   of the same samples
 [[nodiscard]] inline std::vector<SystematicError> lens_errors(const FittedSamples& fitted,
                                                               const PoseGroups& poses,
-                                                              const Eigen::MatrixXd& inverse) {
+                                                              const Eigen::MatrixXd& inverse,
+                                                              MeasurementSlopes& slopes) {
   std::vector<SystematicError> errors;
   for (const MountedSensor& mounted : fitted.problem.sensors()) {
     if (!mounted.sensor().is_camera() || measures_depth(mounted.sensor())) continue;
     if (has_free_lens(mounted, fitted.free)) continue;
     const CameraPixels camera(mounted, fitted.values, fitted.samples);
     if (!(camera.radius() > 0.0)) continue;
-    const LensColumn column(fitted, camera, inverse);
+    const LensColumn column(fitted, camera, inverse, slopes);
     if (!column.matters() || !column.is_sure(poses)) continue;
     const double f = camera.focal_length(), r = camera.radius();
     char shown[64];

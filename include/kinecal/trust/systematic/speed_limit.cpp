@@ -110,7 +110,7 @@ struct LagRows {
   const FreeSet only({parameter}, problem.table().size());
   const Coordinates itself{Eigen::MatrixXd::Ones(1, 1), Eigen::MatrixXd(1, 0),
                            Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)};
-  return linear_fit(*problem.evaluator(only, 1), values, itself).jacobian.col(0);
+  return linear_rows(*problem.evaluator(only, 1), values, itself).jacobian.col(0);
 }
 
 /// Noise of each error block, across the direction in which a wrong stamp moves the rows of a sample:

@@ -121,8 +121,9 @@ class ErrorSearch {
         noise_(noise),
         common_(common),
         freedom_(freedom_of(fitted.fit, poses)),
-        inverse_(Spectrum(information(fitted.fit, fitted.fit.loss)).pseudo_inverse()),
-        joints_(fitted, effects, inverse_),
+        inverse_(Spectrum(fitted.fit.hessian).pseudo_inverse()),
+        slopes_(fitted_),
+        joints_(fitted, effects, inverse_, slopes_),
         changes_(fitted, inverse_) {
     constexpr double kFew = 6.0;
     if (freedom_ < kFew) return;
@@ -134,8 +135,8 @@ class ErrorSearch {
     }
   }
 
-  [[nodiscard]] std::optional<SystematicError> find() const {
-    std::vector<SystematicError> found = lens_errors(fitted_, poses_, inverse_);
+  [[nodiscard]] std::optional<SystematicError> find() {
+    std::vector<SystematicError> found = lens_errors(fitted_, poses_, inverse_, slopes_);
     const ResidualSums sums = sums_of(fitted_.fit.residual);
     if (auto rounding = joints_.rounding(sums.squares)) found.push_back(*rounding);
     add_trials(sums, found);
@@ -238,6 +239,7 @@ class ErrorSearch {
   const CommonNoise& common_;
   double freedom_;
   Eigen::MatrixXd inverse_;
+  MeasurementSlopes slopes_;
   JointTrials joints_;
   ChangeTrials changes_;
   std::vector<const Trial*> trials_;

@@ -47,22 +47,29 @@ namespace {
 }  // namespace
 }  // namespace detail
 
-std::optional<std::pair<FrameOnRobot, FrameOnRobot>> compared_frames(
-    const AnyProblem& problem, std::span<const Sample> samples) {
+std::vector<ComparedFrames> compared_frames(const AnyProblem& problem,
+                                            std::span<const Sample> samples) {
+  std::vector<ComparedFrames> all;
+  const auto is_known = [&](const FrameOnRobot& in) {
+    return std::any_of(all.begin(), all.end(),
+                       [&](const ComparedFrames& of) { return of.in.name() == in.name(); });
+  };
   for (int t = 0; t < problem.num_terms(); ++t) {
     const std::vector<int>& sensors = problem.term(t).sensors;
     if (sensors.empty() || problem.samples_of(t) == 0) continue;
-    FrameOnRobot one = detail::frame_of_features(problem, sensors[0], samples),
-                 other{problem.base()};
+    const auto is_camera = [&](std::size_t i) {
+      return problem.sensors()[static_cast<std::size_t>(sensors[i])].sensor().in_own_frame();
+    };
+    ComparedFrames of{detail::frame_of_features(problem, sensors[0], samples), {problem.base()}};
     if (sensors.size() > 1) {
-      other = detail::frame_of_features(problem, sensors[1], samples);
-      const auto& first = problem.sensors()[static_cast<std::size_t>(sensors[0])];
-      if (first.sensor().in_own_frame()) std::swap(one, other);
+      of.in = detail::frame_of_features(problem, sensors[1], samples);
+      if (is_camera(0)) std::swap(of.frame, of.in);
     }
-    const bool is_own = detail::has_sample_pose(problem, sensors);
-    if (one.name() != other.name() && !is_own) return std::pair(one, other);
+    if (of.frame.name() == of.in.name() || detail::has_sample_pose(problem, sensors)) continue;
+    const bool is_of_camera = sensors.size() > 1 && (is_camera(0) || is_camera(1));
+    if (all.empty() || (is_of_camera && !is_known(of.in))) all.push_back(std::move(of));
   }
-  return std::nullopt;
+  return all;
 }
 
 FrameOnRobot frame_named(const AnyProblem& problem, std::span<const Sample> samples,

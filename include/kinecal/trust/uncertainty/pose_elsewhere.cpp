@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/uncertainty/pose_elsewhere.hpp"
 
+#include <numeric>
+#include <vector>
+
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/noise/noise.hpp"
 #include "kinecal/trust/uncertainty/pose_variance.ipp"
@@ -52,14 +55,13 @@ PoseUncertainty pose_held_out(const AnyProblem& problem, const Assessment& step,
   const double priors = (count - 1.0) / count / std::max(1e-24, prior_variance(step.noise));
   detail::PoseDerivative derivative(problem, free, values, frame, in);
   detail::PoseVariance variance(detail::kNearFeatures * detail::mean_distance(problem, fit));
+  std::vector<int> each(samples.size());
+  std::iota(each.begin(), each.end(), 0);
+  const std::vector<RowSums> others = sums_without_parts(fit, weights, each);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto jacobian = derivative.at(samples[i]);
     if (!jacobian) continue;
-    Eigen::VectorXd others = weights;
-    for (const RowBlock& block : fit.blocks) {
-      if (block.sample == static_cast<int>(i)) others.segment(block.first, block.size).setZero();
-    }
-    const detail::Spectrum spectrum(information(fit, others, priors));
+    const detail::Spectrum spectrum(others[i].information + priors * fit.prior_hessian);
     const Eigen::MatrixXd lost =
         spectrum.scale.cwiseInverse().asDiagonal() * spectrum.vectors.leftCols(spectrum.null);
     Eigen::MatrixXd null(free.size(), by.null.cols() + lost.cols());

@@ -44,7 +44,9 @@ struct PoseUncertainty {
   double rotation = 0.0;        ///< the same of its orientation, radians
   double worst_position = 0.0;  ///< at the worst pose of the samples, metres
   double worst_rotation = 0.0;  ///< the same, radians
-  bool determined = true;       ///< false: an undetermined direction moves its origin
+  double elsewhere =
+      0.0;  ///< of its origin over the limits of the joints, median, metres; 0: unknown
+  bool determined = true;  ///< false: an undetermined direction moves its origin
 };
 
 /// Uncertainty of the pose of a frame in another.

@@ -251,21 +251,26 @@ struct Halves {
   if (solution.poses.count < kFewest) return std::nullopt;
   const LinearFit& fit = solution.fit;
   const Eigen::MatrixXd& basis = fit.coordinates.basis;
-  const auto inverse = [&](const Eigen::VectorXd& weights, double priors) {
-    return Eigen::MatrixXd(basis * Spectrum(information(fit, weights, priors)).pseudo_inverse() *
-                           basis.transpose());
+  const auto inverse = [&](const Eigen::MatrixXd& information) {
+    return Eigen::MatrixXd(basis * Spectrum(information).pseudo_inverse() * basis.transpose());
   };
-  Halves halves{{}, Eigen::MatrixXd::Zero(basis.rows(), basis.rows()), inverse(fit.loss, 1.0)};
+  Halves halves{{}, Eigen::MatrixXd::Zero(basis.rows(), basis.rows()), inverse(fit.hessian)};
+  std::vector<int> half_of;  // each sample
+  for (const int pose : solution.poses.of_sample) half_of.push_back(pose % 2);
+  const std::vector<RowSums> others = sums_without_parts(fit, fit.loss, half_of);
   for (int half = 0; half < 2; ++half) {
+    constexpr double kPriors = 0.5;
     Eigen::VectorXd weights = fit.loss;
     for (const RowBlock& block : fit.blocks) {
-      const int pose = solution.poses.of_sample[static_cast<std::size_t>(block.sample)];
-      if (pose % 2 == half) weights.segment(block.first, block.size).setZero();
+      if (half_of[static_cast<std::size_t>(block.sample)] != half) continue;
+      weights.segment(block.first, block.size).setZero();
     }
-    halves.spread += inverse(weights, 0.5);
+    const RowSums& sums = others[static_cast<std::size_t>(half)];
+    halves.spread += inverse(sums.information + kPriors * fit.prior_hessian);
     try {
+      const Eigen::VectorXd first = step_to_minimum(fit, sums, kPriors);
       halves.values[static_cast<std::size_t>(half)] =
-          refit(solution.evaluator, solution.values, fit, weights, 0.5).values;
+          refit(solution.evaluator, solution.values, fit, weights, first, kPriors).values;
     } catch (const std::domain_error&) {  // a point behind a camera
       return std::nullopt;
     }
@@ -495,10 +500,14 @@ std::vector<ProjectionMap> projection_maps(const KnownSolution& solution) {
   for (std::size_t s = 0; s < problem.sensors().size(); ++s) {
     const MountedSensor& mounted = problem.sensors()[s];
     if (!mounted.sensor().is_camera() || measures_depth(mounted.sensor())) continue;
+    const std::vector<int>& own_parameters = mounted.parameters();
+    const bool frees_some = std::any_of(own_parameters.begin(), own_parameters.end(), [&](int p) {
+      return p >= 0 && solution.free.column(p) >= 0;
+    });
+    if (!frees_some) continue;  // before looking at its pixels
     detail::SeenByCamera seen = detail::seen_by(solution, places, static_cast<int>(s));
     if (seen.pixels.empty()) continue;
     const detail::SolvedProjection camera(mounted, solution.free, solution.values, seen.settings);
-    if (camera.columns().empty()) continue;
     if (maps.empty()) halves = detail::halves_of(solution);
     std::optional<Eigen::VectorXd> apart;
     const auto own = [&](std::size_t half) {
@@ -524,7 +533,7 @@ std::vector<ProjectionMap> projection_maps(const AnyProblem& problem, const Free
   const auto evaluator = problem.evaluator(free, 1);
   const LinearFit fit =
       linear_fit(*evaluator, values, determined_coordinates(problem, free, values));
-  const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
+  const Eigen::MatrixXd inverse = detail::Spectrum(fit.hessian).pseudo_inverse();
   const std::vector<BlockNoise> noise = estimate_noise(problem, fit, inverse);
   const PoseGroups poses = pose_groups(problem, samples);
   const Uncertainty known =

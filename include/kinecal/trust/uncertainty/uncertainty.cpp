@@ -92,7 +92,7 @@ Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
     hessian = std::move(sums.hessian);
     middle = std::move(sums.gradients);
   } else {
-    hessian = information(fit, fit.loss);
+    hessian = fit.hessian;
     middle = detail::noise_information(fit, noise);
   }
   middle += of_priors;

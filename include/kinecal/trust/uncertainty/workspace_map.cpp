@@ -72,8 +72,9 @@ namespace {
 }  // namespace detail
 
 std::vector<KnownPoint> workspace_map(const AnyProblem& problem, const Assessment& step,
-                                      ParameterValues values, int poses) {
-  if (!step.pose || step.parameters.empty()) return {};
+                                      const PoseUncertainty& pose, ParameterValues values,
+                                      int poses) {
+  if (step.parameters.empty()) return {};
   const auto floats = [](const RuntimeChain& chain) {
     return std::any_of(chain.joints.begin(), chain.joints.end(),
                        [](const ChainJoint& joint) { return !joint.floating.empty(); });
@@ -82,8 +83,8 @@ std::vector<KnownPoint> workspace_map(const AnyProblem& problem, const Assessmen
     RuntimeChain chain = make_chain(problem.robot(), problem.base(), link, problem.frames());
     return frame == link ? chain : with_virtual_frame(std::move(chain), frame);
   };
-  const RuntimeChain to_frame = chain_to(step.pose->link, step.pose->frame),
-                     to_in = chain_to(step.pose->in_link, step.pose->in);
+  const RuntimeChain to_frame = chain_to(pose.link, pose.frame),
+                     to_in = chain_to(pose.in_link, pose.in);
   if (floats(to_frame) || floats(to_in)) return {};  // where it gets to is unknown
   const FreeSet free(step.parameters, problem.table().size());
   detail::TipDerivative of_frame(problem, free, values, to_frame),

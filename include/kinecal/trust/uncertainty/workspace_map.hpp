@@ -19,15 +19,17 @@ struct KnownPoint {
   double deviation = 0.0;  ///< standard deviation of the position, metres: sqrt(trace)
 };
 
-/// The uncertainty of an assessed step's pose at poses spread evenly over the limits of the joints
+/// The uncertainty of a pose, by an assessed step, at poses spread evenly over the limits of the joints
 /// that move it; a joint without limits, or with wider ones, moves over a turn or a metre.
+/// @param pose    its frames
 /// @param values  of all parameters of the table: the solution
 /// @param poses   their number
-/// @returns       empty if the step has no such pose, or if some joint drives nothing known
+/// @returns       empty if the step frees nothing, or if some joint drives nothing known
 /// Source: Halton, On the efficiency of certain quasi-random sequences of points, 1960, for the
 /// poses.
 [[nodiscard]] std::vector<KnownPoint> workspace_map(const AnyProblem& problem,
-                                                    const Assessment& step, ParameterValues values,
-                                                    int poses);
+                                                    const Assessment& step,
+                                                    const PoseUncertainty& pose,
+                                                    ParameterValues values, int poses);
 
 }  // namespace kinecal

@@ -172,7 +172,7 @@ class DriftFit {
       }
     }
     const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(free_.size(), free_.size());
-    start_ = linear_fit(*evaluator_, state.values, {identity, {}, {}, {}});
+    start_ = linear_rows(*evaluator_, state.values, {identity, {}, {}, {}});
     effects_ = joint_effects(problem, state.values, samples, free_, start_);
     for (const RowBlock& block : start_.blocks) {
       const double by = 1.0 / scale_[static_cast<std::size_t>(block.term)];
@@ -320,7 +320,7 @@ class DriftFit {
       const Eigen::VectorXd z = at.z + change;
       try {
         LinearFit rows =
-            scaled(linear_fit(*evaluator_, values(directions * z), start_.coordinates));
+            scaled(linear_rows(*evaluator_, values(directions * z), start_.coordinates));
         whitening.apply(rows);
         const double statistic = rows.residual.squaredNorm() + z.head(known).squaredNorm();
         if (!(statistic <= at.statistic)) continue;
