@@ -174,7 +174,7 @@ set(KINECAL_CORE_FOLDERS text geometry kinematics parameters samples sensors err
                          crate testing)
 kinecal_add_library(core UNIT 16
   ALONE evaluation/problem.ipp evaluation/built_in_sensors.ipp evaluation/built_in_blocks.ipp
-        evaluation/built_in_pose_blocks.ipp  # these take longest
+        evaluation/built_in_base_blocks.ipp evaluation/built_in_pose_blocks.ipp  # these take longest
   FOLDERS ${KINECAL_CORE_FOLDERS} core linkage
   LINK Eigen3::Eigen Threads::Threads)
 kinecal_add_library(capture UNIT 30

@@ -40,6 +40,7 @@
 #include "kinecal/capture/finders/touch_finder.hpp"
 #include "kinecal/capture/finders/turn_votes.hpp"
 #include "kinecal/capture/finders/view_checks.hpp"
+#include "kinecal/capture/finders/wall_in_scan.hpp"
 #include "kinecal/capture/image.hpp"
 #include "kinecal/capture/opencv/kinecal_opencv.hpp"
 #include "kinecal/capture/plugin_file.hpp"

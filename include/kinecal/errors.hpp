@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/errors/base_drives.hpp"
+#include "kinecal/errors/base_motion.hpp"
 #include "kinecal/errors/block_checks.hpp"
 #include "kinecal/errors/built_in_block.hpp"
 #include "kinecal/errors/difference.hpp"

@@ -5,6 +5,7 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/evaluation/basic_problem.hpp"
 #include "kinecal/evaluation/block_term.hpp"
+#include "kinecal/evaluation/built_in_base_blocks.hpp"
 #include "kinecal/evaluation/built_in_blocks.hpp"
 #include "kinecal/evaluation/built_in_pose_blocks.hpp"
 #include "kinecal/evaluation/built_in_sensors.hpp"

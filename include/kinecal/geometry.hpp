@@ -10,6 +10,7 @@
 #include "kinecal/geometry/least_norm.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/geometry/packet.hpp"
+#include "kinecal/geometry/planar_motion.hpp"
 #include "kinecal/geometry/pose.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/geometry/rpy.hpp"

@@ -13,6 +13,7 @@
 #include "kinecal/study/scene.hpp"
 #include "kinecal/study/seeded_random.hpp"
 #include "kinecal/study/select_poses.hpp"
+#include "kinecal/study/simulated_base.hpp"
 #include "kinecal/study/simulated_camera.hpp"
 #include "kinecal/study/simulated_robot.hpp"
 #include "kinecal/study/study_summary.hpp"

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "kinecal/errors.hpp"
 #include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/solve/solve.hpp"
@@ -94,6 +96,43 @@ TYPED_TEST(WithoutSensor, RowsAndSumsAreThoseOfCentralDifferences) {
   }
   EXPECT_GT(expected.cost, 0.0);
   test::expect_same(normal_equations(problem, x, &all), expected, 1e-12);
+}
+
+/// A base against the tracked pose of a sensor on it, or against a wall.
+template <class S, class B>
+void check_base(const B& block) {
+  BasicProblem<S> problem = test::open_problem<S>(block, {}, {.scale = 2.0});
+  std::vector<Sample> samples =
+      test::open_samples(problem, test::values_at("zero", problem.table()), 7);
+  for (Sample& sample : samples) {
+    double n = static_cast<double>(&sample - samples.data());
+    for (const std::string_view name : kConditionsOfBlock<B>) {
+      if (!name.starts_with(kBefore)) sample.conditions[std::string(name)] = std::sin(n += 0.7);
+    }
+  }
+  set_before(samples);
+  for (const Sample& sample : samples) problem.add_sample(sample);
+  EXPECT_EQ(problem.samples_of(0), 6);
+  std::vector<double> x = test::values_at("random", problem.table());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] += problem.table()[static_cast<int>(i)].initial;  // of scales: 1
+  }
+  test::check_central_differences(problem, x);
+}
+
+TYPED_TEST(WithoutSensor, RowsOfABaseAreThoseOfCentralDifferences) {
+  check_base<TypeParam>(DifferentialToPose{});
+  check_base<TypeParam>(TricycleToWall{});
+  check_base<TypeParam>(OdometryToWall{});
+  check_base<TypeParam>(GyroToPose{});
+}
+
+TEST(WithoutSensors, ANumberThatIsMissingSkipsTheSample) {
+  Problem problem = wheels_problem<Packet>();
+  std::vector<Sample> samples = drive(problem, 5);
+  samples[3].conditions["turn"] = std::numeric_limits<double>::quiet_NaN();
+  for (const Sample& sample : samples) problem.add_sample(sample);
+  EXPECT_EQ(problem.samples_of(0), 3);
 }
 
 TEST(WithoutSensors, KeepTheLaws) {

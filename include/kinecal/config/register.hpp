@@ -5,8 +5,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-
 #include "kinecal/config/registry.hpp"
 #include "kinecal/evaluation/problem.hpp"
 
@@ -61,9 +59,7 @@ void register_block(
   for (std::size_t i = 0; i < keys.size(); ++i) {
     entry.sensors.push_back({keys[i], kQuantities<B>[i]});
   }
-  const auto& conditions = kConditionsOfBlock<B>;
-  entry.looks_before = std::any_of(conditions.begin(), conditions.end(),
-                                   [](auto name) { return name.starts_with(kBefore); });
+  entry.looks_before = detail::conditions_before<B>();
   entry.numbers = std::move(numbers);
   entry.parameters = [make](const BlockConfig& config) {
     const auto infos = parameters_of(make(config.numbers));

@@ -65,6 +65,7 @@ template <ErrorBlock B, class Make>
     entry.sensors.push_back({keys[i], kQuantities<B>[i]});
   }
   entry.numbers = std::move(numbers);
+  entry.looks_before = conditions_before<B>();
   entry.parameters = [make](const BlockConfig& block) {
     const auto infos = parameters_of(B(make(block)));
     return std::vector<ParameterInfo>(infos.begin(), infos.end());
@@ -80,6 +81,61 @@ template <ErrorBlock B, class Make>
   const double length = block.numbers.at(key);
   if (length < 0.0) throw std::invalid_argument(std::string(key) + " is negative");
   return length;
+}
+
+/// The numbers of a drive, with their defaults.
+/// @{
+[[nodiscard]] NumberKeys numbers_of(const DifferentialDrive&) {
+  return {{"wheel_radius", 1.0}, {"track_width", 1.0}};
+}
+[[nodiscard]] NumberKeys numbers_of(const MecanumDrive&) {
+  return {{"wheel_radius", 1.0}, {"track_width", 1.0}, {"wheelbase", 1.0}};
+}
+[[nodiscard]] NumberKeys numbers_of(const TricycleDrive&) {
+  return {{"wheel_radius", 1.0}, {"wheelbase", 1.0}};
+}
+[[nodiscard]] NumberKeys numbers_of(const ReportedOdometry&) {
+  return {};
+}
+/// @}
+
+/// @throws std::invalid_argument  if a length is not positive
+[[nodiscard]] double size_of(const BlockConfig& block, const char* key) {
+  const double length = block.numbers.at(key);
+  if (!(length > 0.0)) throw std::invalid_argument(std::string(key) + " is not positive");
+  return length;
+}
+
+/// A drive of these numbers.
+/// @{
+void set_drive(const BlockConfig& block, DifferentialDrive& drive) {
+  drive = {size_of(block, "wheel_radius"), size_of(block, "track_width")};
+}
+void set_drive(const BlockConfig& block, MecanumDrive& drive) {
+  drive = {size_of(block, "wheel_radius"), size_of(block, "track_width"),
+           size_of(block, "wheelbase")};
+}
+void set_drive(const BlockConfig& block, TricycleDrive& drive) {
+  drive = {size_of(block, "wheel_radius"), size_of(block, "wheelbase")};
+}
+void set_drive(const BlockConfig&, ReportedOdometry&) {}
+/// @}
+
+/// The entry of a drive against what a sensor on the base saw.
+template <ErrorBlock B>
+[[nodiscard]] BlockEntry base_entry() {
+  NumberKeys numbers = numbers_of(decltype(B::drive){});
+  for (const char* key : {"x", "y", "yaw"}) numbers.emplace_back(key, 0.0);
+  for (const char* key : {"translation_scale", "rotation_scale"}) numbers.emplace_back(key, 1.0);
+  return built_in_block<B>({}, std::move(numbers), [](const BlockConfig& block) {
+    const auto number = [&](const char* key) { return block.numbers.at(key); };
+    B made;
+    set_drive(block, made.drive);
+    made.mount = {number("x"), number("y"), number("yaw")};
+    made.translation_scale = number("translation_scale");
+    made.rotation_scale = number("rotation_scale");
+    return made;
+  });
 }
 
 [[nodiscard]] BlockEntry prior_entry() {
@@ -170,6 +226,16 @@ Registry::Registry() {
       }));
   add(built_in_block<RayToRay>(pair, {{"scale", 1.0}},
                                [](const BlockConfig&) { return RayToRay{}; }));
+  add(detail::base_entry<DifferentialToPose>());
+  add(detail::base_entry<DifferentialToWall>());
+  add(detail::base_entry<MecanumToPose>());
+  add(detail::base_entry<MecanumToWall>());
+  add(detail::base_entry<TricycleToPose>());
+  add(detail::base_entry<TricycleToWall>());
+  add(detail::base_entry<OdometryToPose>());
+  add(detail::base_entry<OdometryToWall>());
+  add(built_in_block<GyroToPose>({}, {}, [](const BlockConfig&) { return GyroToPose{}; }));
+  add(built_in_block<GyroToWall>({}, {}, [](const BlockConfig&) { return GyroToWall{}; }));
 }
 
 void Registry::add(SensorEntry entry) {

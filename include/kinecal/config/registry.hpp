@@ -15,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -76,6 +77,20 @@ template <Sensor M, class Add>
 
 }  // namespace detail
 
+namespace detail {
+
+/// Names of the conditions of the sample before that an error block takes.
+template <ErrorBlock B>
+[[nodiscard]] std::vector<std::string> conditions_before() {
+  std::vector<std::string> names;
+  for (const std::string_view name : kConditionsOfBlock<B>) {
+    if (name.starts_with(kBefore)) names.emplace_back(name.substr(kBefore.size()));
+  }
+  return names;
+}
+
+}  // namespace detail
+
 /// A sensor of an error block in configurations.
 struct BlockSensorEntry {
   std::vector<std::string> keys;  ///< the usual one first: "model_a"; none: the robot's surface
@@ -91,8 +106,8 @@ struct BlockEntry {
   std::vector<std::pair<std::string, double>> numbers;  ///< keys and defaults; "scale" is a factor
                                                         ///< of the residual in every block
   bool has_param = false;                               ///< true if it has a key `param`: a prior
-  bool looks_before =
-      false;                 ///< true if it takes conditions of the sample before: see set_before()
+  /// Names of the conditions of the sample before that it takes: see set_before().
+  std::vector<std::string> looks_before = {};
   bool is_upstream = false;  ///< from robot_calibration, whose files may have keys that we ignore
   /// The block's own parameters.
   /// @throws std::exception  if the numbers of the block are impossible

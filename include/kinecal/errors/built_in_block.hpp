@@ -4,6 +4,7 @@
 
 #include <variant>
 
+#include "kinecal/errors/base_motion.hpp"
 #include "kinecal/errors/gravity_seen.hpp"
 #include "kinecal/errors/plane_to_plane.hpp"
 #include "kinecal/errors/point_distance.hpp"
@@ -26,6 +27,8 @@ namespace kinecal {
 using BuiltInBlock =
     std::variant<PointToPoint, PointToPixel, PointToPlane, PlaneToPlane, PointDistance, PointToLine,
                  PointToSphere, PoseToPose, RayToRay, PointToRay, PointToMesh, PointToOutline,
-                 PointOnPlane, PointOnLine, GravitySeen>;
+                 PointOnPlane, PointOnLine, GravitySeen, DifferentialToPose, DifferentialToWall,
+                 MecanumToPose, MecanumToWall, TricycleToPose, TricycleToWall, OdometryToPose,
+                 OdometryToWall, GyroToPose, GyroToWall>;
 
 }  // namespace kinecal

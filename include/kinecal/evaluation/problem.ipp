@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinecal/evaluation/basic_problem.ipp"
+#include "kinecal/evaluation/built_in_base_blocks.hpp"
 #include "kinecal/evaluation/built_in_blocks.hpp"
 #include "kinecal/evaluation/built_in_pose_blocks.hpp"
 #include "kinecal/evaluation/built_in_sensors.hpp"

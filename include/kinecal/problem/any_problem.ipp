@@ -184,10 +184,15 @@ struct TermConditions {
 }
 
 /// True if a block without a sensor should apply to a sample: it has one of the block's conditions, or joints suffice;
-/// and there is a sample before it if the block looks there.
+/// none of them is missing (not a number); and there is a sample before it if the block looks there.
 [[nodiscard]] inline bool has_conditions(const Term& term, const Sample& sample) {
   const auto& names = term.conditions;
   const auto is_before = [](std::string_view name) { return name.starts_with(kBefore); };
+  const auto is_missing = [&](std::string_view name) {
+    const auto found = sample.conditions.find(std::string(name));
+    return found != sample.conditions.end() && std::isnan(found->second);
+  };
+  if (std::any_of(names.begin(), names.end(), is_missing)) return false;
   if (sample.before.empty() && std::any_of(names.begin(), names.end(), is_before)) return false;
   return std::any_of(names.begin(), names.end(),
                      [&](auto name) { return sample.conditions.contains(std::string(name)); }) ||
@@ -510,6 +515,7 @@ KINECAL_INLINE void AnyProblem::set_measurements(int sample, const Observation& 
 }
 
 KINECAL_INLINE FeatureLabel AnyProblem::feature(int term, int sample, std::ptrdiff_t i) const {
+  if (terms_[static_cast<std::size_t>(term)].quantities.empty()) return {-1};
   const auto& all = samples_[static_cast<std::size_t>(sample)].labels;
   const auto labels = all.find(term);
   if (labels == all.end()) return {static_cast<int>(i)};

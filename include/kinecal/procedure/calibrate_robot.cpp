@@ -41,15 +41,17 @@ namespace {
                      [](const ModelConfig& model) { return model.lens == kAnyLens; });
 }
 
-/// True if an error block takes conditions of the sample before.
-[[nodiscard]] bool looks_before(const Config& config) {
-  return std::any_of(config.steps.begin(), config.steps.end(), [](const StepConfig& step) {
-    const auto looks = [](const BlockConfig& block) {
-      const BlockEntry* entry = entry_of(block);
-      return entry != nullptr && entry->looks_before;
-    };
-    return std::any_of(step.error_blocks.begin(), step.error_blocks.end(), looks);
-  });
+/// Names of the conditions of the sample before that error blocks take.
+[[nodiscard]] std::set<std::string> looks_before(const Config& config) {
+  std::set<std::string> names;
+  for (const StepConfig& step : config.steps) {
+    for (const BlockConfig& block : step.error_blocks) {
+      if (const BlockEntry* entry = entry_of(block)) {
+        names.insert(entry->looks_before.begin(), entry->looks_before.end());
+      }
+    }
+  }
+  return names;
 }
 
 /// Assembles the problems, and doubts the input.
@@ -357,7 +359,9 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
   if (std::none_of(prepared.samples.begin(), prepared.samples.end(), has_moves)) {
     set_joint_moves(prepared.samples);
   }
-  if (detail::looks_before(config)) set_before(prepared.samples);
+  if (const auto names = detail::looks_before(config); !names.empty()) {
+    set_before(prepared.samples, names);
+  }
   prepared.decides_cameras = waits || !config.per_sample.empty();
   if (!prepare_cameras(prepared.robot, config, prepared.samples, found)) return prepared;
   if (!is_open && waits) hold_parameters(config, options.hold, found);

@@ -46,16 +46,30 @@ inline void set_joint_moves(std::span<Sample> samples) {
   }
 }
 
-/// Sets Sample::before, for error blocks that look at the sample before.
+/// Sets Sample::before, for error blocks that look at the sample before: the last one of the same run (kRun) in which
+/// none of the numbers that they look at is missing, such as a wall that was not seen.
 /// @param samples  of one recording, in its order
-inline void set_before(std::span<Sample> samples) {
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    const Sample& last = samples[i - 1];
-    std::map<std::string, double>& before = samples[i].before = last.conditions;
-    for (std::size_t j = 0; j < std::min(last.joint_names.size(), last.joint_positions.size());
-         ++j) {
-      before.emplace(last.joint_names[j], last.joint_positions[j]);
+/// @param names    of the conditions and joints that the blocks look at
+inline void set_before(std::span<Sample> samples, const std::set<std::string>& names = {}) {
+  const auto run_of = [](const Sample& sample) {
+    const auto run = sample.conditions.find(kRun);
+    return run == sample.conditions.end() ? std::optional<double>() : run->second;
+  };
+  const Sample* last = nullptr;
+  for (Sample& sample : samples) {
+    sample.before.clear();
+    if (last != nullptr && run_of(*last) == run_of(sample)) {
+      sample.before = last->conditions;
+      for (std::size_t j = 0; j < std::min(last->joint_names.size(), last->joint_positions.size());
+           ++j) {
+        sample.before.emplace(last->joint_names[j], last->joint_positions[j]);
+      }
     }
+    const bool is_missing = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      const auto found = sample.conditions.find(name);
+      return found != sample.conditions.end() && std::isnan(found->second);
+    });
+    if (!is_missing) last = &sample;
   }
 }
 

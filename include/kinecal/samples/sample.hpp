@@ -21,6 +21,9 @@ namespace kinecal {
 
 /// Begins the name of a condition that is one of the sample before: "before left_wheel".
 inline constexpr std::string_view kBefore = "before ";
+/// The condition that numbers the runs of a recording: a sample of another run is not the sample before, and samples of a
+/// run may err together.
+inline constexpr const char* kRun = "run";
 
 /// One observed point, pixel, pose or reading.
 struct Feature {
@@ -54,11 +57,13 @@ struct CameraInfo {
 
 /// The name of a feature in messages and tables: its place and its id.
 struct FeatureLabel {
-  int place = 0;               ///< from 0, in the list of the observation
+  int place =
+      0;  ///< from 0, in the list of the observation; -1: a residual without a sensor, of the sample itself
   std::optional<int> id = {};  ///< Feature::id, if it has one
 
-  /// "feature 3", counted from 1, or "the feature with id 17".
+  /// "feature 3", counted from 1, "the feature with id 17" or "the sample".
   [[nodiscard]] std::string text() const {
+    if (place < 0) return "the sample";
     return id ? "the feature with id " + std::to_string(*id)
               : "feature " + std::to_string(place + 1);
   }

@@ -192,7 +192,7 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.views = distinct_poses(problem, samples);
   found.one_pose = are_one_pose(problem, samples);
   found.neighbours = neighbours(problem, fit, single);
-  const PoseGroups poses = joined(single, found.neighbours.together);
+  const PoseGroups poses = by_run(joined(single, found.neighbours.together), samples);
   found.size = detail::robot_size(problem);
   const Eigen::MatrixXd inverse = detail::Spectrum(fit.hessian).pseudo_inverse();
   found.noise = estimate_noise(problem, fit, inverse);

@@ -1,5 +1,5 @@
 // The messages that kinecal reads and writes, as ROS 1 and ROS 2 define them.
-// Source: packages std_msgs, geometry_msgs, sensor_msgs, tf2_msgs, robot_calibration_msgs.
+// Source: packages std_msgs, geometry_msgs, nav_msgs, sensor_msgs, tf2_msgs, robot_calibration_msgs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -98,6 +98,52 @@ inline constexpr std::array kKnownMessages = {
                  "std_msgs/Header header\n"
                  "string format\n"
                  "uint8[] data\n"},
+    KnownMessage{"nav_msgs/Odometry",
+                 "std_msgs/Header header\n"
+                 "string child_frame_id\n"
+                 "geometry_msgs/PoseWithCovariance pose\n"
+                 "geometry_msgs/TwistWithCovariance twist\n",
+                 "cd5e73d190d741a2f92e81eda573aca7"},
+    KnownMessage{"sensor_msgs/Imu",
+                 "std_msgs/Header header\n"
+                 "geometry_msgs/Quaternion orientation\n"
+                 "float64[9] orientation_covariance\n"
+                 "geometry_msgs/Vector3 angular_velocity\n"
+                 "float64[9] angular_velocity_covariance\n"
+                 "geometry_msgs/Vector3 linear_acceleration\n"
+                 "float64[9] linear_acceleration_covariance\n",
+                 "6a62c6daae103f4ff57a132d6f95cec2"},
+    KnownMessage{"sensor_msgs/LaserScan",
+                 "std_msgs/Header header\n"
+                 "float32 angle_min\n"
+                 "float32 angle_max\n"
+                 "float32 angle_increment\n"
+                 "float32 time_increment\n"
+                 "float32 scan_time\n"
+                 "float32 range_min\n"
+                 "float32 range_max\n"
+                 "float32[] ranges\n"
+                 "float32[] intensities\n",
+                 "90c7ef2dc6895d81024acba2ac42f369"},
+    KnownMessage{"geometry_msgs/PoseStamped",
+                 "std_msgs/Header header\n"
+                 "Pose pose\n",
+                 "d3812c3cbc69362b77dc0b19b345f8f5"},
+    KnownMessage{"geometry_msgs/PoseWithCovarianceStamped",
+                 "std_msgs/Header header\n"
+                 "PoseWithCovariance pose\n"},
+    KnownMessage{"geometry_msgs/PoseWithCovariance",
+                 "Pose pose\n"
+                 "float64[36] covariance\n"},
+    KnownMessage{"geometry_msgs/TwistWithCovariance",
+                 "Twist twist\n"
+                 "float64[36] covariance\n"},
+    KnownMessage{"geometry_msgs/Pose",
+                 "Point position\n"
+                 "Quaternion orientation\n"},
+    KnownMessage{"geometry_msgs/Twist",
+                 "Vector3 linear\n"
+                 "Vector3 angular\n"},
     KnownMessage{"geometry_msgs/PointStamped",
                  "std_msgs/Header header\n"
                  "Point point\n"},

@@ -9,6 +9,7 @@
 #include "kinecal/files/csv/read_csv_samples.hpp"
 #include "kinecal/files/poses/hand_eye_samples.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
+#include "kinecal/files/recordings/base_messages.hpp"
 #include "kinecal/files/recordings/message_decoder.ipp"
 #include "kinecal/files/recordings/message_samples.ipp"
 #include "kinecal/samples/joint_moves.hpp"
@@ -80,13 +81,17 @@ Recording read_as_recorded(const std::string& path, Diagnostics& diagnostics, un
       if (const auto sample = decoder.decode(message, number)) samples.add(*sample, number);
     }
   };
-  const auto wants = [](const BagTopic& topic) {
+  bool is_drive = false;
+  const auto wants = [&](const BagTopic& topic) {
     const TopicUse use = use_of(topic);
+    is_drive = is_drive || shows_base(topic);
     return use == TopicUse::samples || use == TopicUse::urdf;
   };
   read_bag(path, {wants, handle, meter}, diagnostics);
   recording.samples = samples.take(diagnostics);
-  if (number == 0 && diagnostics.errors.size() == errors_before) {
+  if (number == 0 && is_drive && diagnostics.errors.size() == errors_before) {
+    recording.samples = read_base_drive(path, diagnostics);
+  } else if (number == 0 && diagnostics.errors.size() == errors_before) {
     diagnostics.error({path, 0},
                       "no messages of robot_calibration_msgs/CalibrationData in this bag; "
                       "'kinecal inspect' shows what is in it");

@@ -14,6 +14,7 @@
 #include "kinecal/files/cameras/camera_fields.ipp"
 #include "kinecal/files/cameras/camera_info.hpp"
 #include "kinecal/files/results/arm_files.hpp"
+#include "kinecal/files/results/base_file.hpp"
 #include "kinecal/files/results/depth_file.hpp"
 #include "kinecal/files/results/result_text.ipp"
 #include "kinecal/files/results/transform_files.hpp"
@@ -159,6 +160,11 @@ std::vector<OutputFile> result_files(const Robot& robot, const std::string& urdf
     }
     files.push_back({detail::camera_file("rgb", name, options.date), content});
     refer("rgb_info", name, files.back().name);
+  }
+  if (const std::string base = base_calibration_yaml(calibration, result.table, options.deviations);
+      !base.empty()) {
+    files.push_back({detail::dated("base_calibration", ".yaml", options.date), base});
+    refer("base", "", files.back().name);
   }
   std::string values = detail::values_yaml(robot, result, options.deviations);
   if (!references.empty()) values += references.substr(1) + "\n";

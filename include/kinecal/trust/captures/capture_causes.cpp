@@ -5,8 +5,10 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -292,6 +294,76 @@ struct JointCause {
           after.rows.squaredNorm()};
 }
 
+/// Names of what blocks without a sensor compare with the sample before.
+[[nodiscard]] std::set<std::string> compared_before(const AnyProblem& problem) {
+  std::set<std::string> names;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const Term& term = problem.term(t);
+    if (!term.quantities.empty()) continue;
+    for (const std::string_view name : term.conditions) {
+      if (name.starts_with(kBefore)) names.emplace(name.substr(kBefore.size()));
+    }
+  }
+  return names;
+}
+
+/// A sample in which one condition or joint position is another.
+[[nodiscard]] Sample with_condition(const Sample& sample, const std::string& name, double change) {
+  Sample changed = sample;
+  const auto found = changed.conditions.find(name);
+  if (found == changed.conditions.end()) {
+    changed.add_to_position(name, change);
+  } else {
+    found->second += change;
+  }
+  return changed;
+}
+
+/// The change of one number by Gauss-Newton that brings a sample nearest to the fit.
+[[nodiscard]] double nearest_change(const CaptureTrials& trials, const Sample& sample,
+                                    const std::string& name) {
+  constexpr int kIterations = 4;
+  double change = 0.0;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const std::vector<TrialRows> found = trials(
+        {with_condition(sample, name, change), with_condition(sample, name, change + kJointStep)});
+    if (!found[0].defined || !found[1].defined) break;
+    const Eigen::VectorXd slope = (found[1].rows - found[0].rows) / kJointStep;
+    if (!(slope.squaredNorm() > 0.0)) break;
+    change -= slope.dot(found[0].rows) / slope.squaredNorm();
+  }
+  return change;
+}
+
+/// Tests whether a wheel slipped, or something else moved on alone: one number of a block that looks at the sample before.
+[[nodiscard]] std::string slip(const CaptureTrials& trials, const AnyProblem& problem,
+                               const Sample& sample, const TrialRows& now) {
+  struct Explanation {
+    double chi2 = 0.0;
+    std::string text;
+  };
+  std::vector<Explanation> explain;
+  bool drives = false;
+  for (const std::string& name : compared_before(problem)) {
+    const bool is_wheel = name.find("wheel") != std::string::npos;
+    drives = drives || is_wheel || name.starts_with("odom");
+    const double change = nearest_change(trials, sample, name);
+    const TrialRows after = trials({with_condition(sample, name, change)}).front();
+    if (!after.fits() || after.rows.size() != now.rows.size()) continue;
+    char text[200];
+    (void)std::snprintf(text, sizeof text, "'%s' advanced by %.3g too %s%s", name.c_str(),
+                        std::abs(change), change < 0.0 ? "much" : "little",
+                        is_wheel ? ": it slipped" : "");
+    explain.push_back({after.rows.squaredNorm(), text});
+  }
+  if (!explain.empty()) {
+    return std::min_element(explain.begin(), explain.end(),
+                            [](const auto& a, const auto& b) { return a.chi2 < b.chi2; })
+        ->text;
+  }
+  return drives ? "wheels slipped, or what was tracked jumped" : "";
+}
+
 /// A sample with its features in another order, and a description of that order.
 struct FeatureOrder {
   std::string cause;
@@ -413,7 +485,8 @@ std::string capture_cause(const AnyProblem& problem, ParameterValues values,
   detail::JointCause one = detail::wrong_reading(trials, problem.robot(), sample, now);
   detail::JointCause all = detail::motion(trials, problem.robot(), sample, now);
   const bool is_one = all.text.empty() || one.chi2 < all.chi2 + kBetter;
-  return !one.text.empty() && is_one ? one.text : all.text;
+  cause = !one.text.empty() && is_one ? one.text : all.text;
+  return cause.empty() ? detail::slip(trials, problem, in_order.value_or(sample), now) : cause;
 }
 
 }  // namespace kinecal

@@ -9,6 +9,7 @@
 //   one joint's reading   Gauss-Newton over its position: three features, or one with orientation
 //   motion                all joints slightly, penalty (q / 0.2 rad)^2: five residuals more than
 //                         unknowns.  A slipped target looks the same, so both are named.
+//   slip                  of a block that looks at the sample before, one number that it compares: a wheel
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -153,9 +153,11 @@ struct WhitenedFit {
 };
 
 /// @param independent  without the share of priors
+/// @param may_cancel   errors of a group may cancel each other: those of motions between poses that are tracked do
 [[nodiscard]] std::optional<GradientVariance> variance_of(const WhitenedFit& of,
                                                           const RowGroups& groups,
-                                                          const Eigen::MatrixXd& independent) {
+                                                          const Eigen::MatrixXd& independent,
+                                                          bool may_cancel) {
   const LinearFit& fit = of.fit;
   GradientSums sums(fit.coordinates.basis * of.whitening);
   double directions = 0.0;
@@ -178,7 +180,8 @@ struct WhitenedFit {
   for (const Eigen::VectorXd& x : sums.groups) of_groups += x.squaredNorm();
   double effect = of_groups / of_features;
   const double chance = std::sqrt(sums.chance) / directions;
-  if (effect <= 1.0 + 3.0 * chance) effect = 1.0;
+  const bool is_more = effect > 1.0 + 3.0 * chance, is_less = effect < 1.0 / (1.0 + 3.0 * chance);
+  if (!is_more && !(may_cancel && is_less)) effect = 1.0;
   const Eigen::MatrixXd of_rows = of.whitening.transpose() * independent * of.whitening;
   return GradientVariance{of.back * shrunk(sums, effect * of_rows) * of.back.transpose(), effect};
 }
@@ -226,11 +229,12 @@ GradientVariance gradient_variance(const AnyProblem& problem, const LinearFit& f
       spectrum.scale.cwiseInverse().asDiagonal() * vectors * singular.cwiseInverse().asDiagonal(),
       spectrum.scale.asDiagonal() * vectors * singular.asDiagonal()};
   const Eigen::MatrixXd of_rows = independent - of_priors;
-  auto found = detail::variance_of(whitened, detail::groups_by_pose(fit, poses), of_rows);
+  auto found =
+      detail::variance_of(whitened, detail::groups_by_pose(fit, poses), of_rows, poses.are_runs);
   if (!found) return {independent};
   if (links.count > 1) {
     const auto by_links =
-        detail::variance_of(whitened, detail::groups_by_link(fit, poses, links), of_rows);
+        detail::variance_of(whitened, detail::groups_by_link(fit, poses, links), of_rows, false);
     if (by_links && by_links->effect > found->effect) {
       found = by_links;
       found->by_links = true;

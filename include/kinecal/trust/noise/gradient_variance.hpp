@@ -56,7 +56,7 @@ struct FeatureLinks {
 /// @param poses        of the problem's samples
 /// @param independent  (coordinates x coordinates) the variance if all features err independently
 /// @param of_priors    (coordinates x coordinates) the share of priors in it
-/// @returns  an effect of one unless the groups show more by three standard deviations
+/// @returns  an effect of one unless the groups show more by three standard deviations; of runs, more or less
 [[nodiscard]] GradientVariance gradient_variance(const AnyProblem& problem, const LinearFit& fit,
                                                  const PoseGroups& poses, const FeatureLinks& links,
                                                  const Eigen::MatrixXd& independent,

@@ -135,6 +135,21 @@ PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> sample
   return groups.count < 2 ? each_its_own(samples.size()) : groups;
 }
 
+PoseGroups by_run(const PoseGroups& poses, std::span<const Sample> samples) {
+  constexpr int kFewest = 5;
+  std::map<double, int> numbers;
+  PoseGroups runs;
+  for (const Sample& sample : samples) {
+    const auto run = sample.conditions.find(kRun);
+    if (run == sample.conditions.end() || !std::isfinite(run->second)) return poses;
+    runs.of_sample.push_back(
+        numbers.try_emplace(run->second, static_cast<int>(numbers.size())).first->second);
+  }
+  runs.count = static_cast<int>(numbers.size());
+  runs.are_runs = true;
+  return runs.count < kFewest ? poses : runs;
+}
+
 int distinct_poses(const AnyProblem& problem, std::span<const Sample> samples) {
   const Eigen::MatrixXd places = detail::places_of(problem, samples);
   return places.rows() == 0 ? static_cast<int>(samples.size()) : detail::groups_of(places).count;

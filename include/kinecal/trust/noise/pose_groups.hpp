@@ -18,6 +18,7 @@ namespace kinecal {
 struct PoseGroups {
   std::vector<int> of_sample;  ///< number of its pose, from 0, in the order of the samples
   int count = 0;               ///< number of poses
+  bool are_runs = false;       ///< they are runs of a recording: see by_run()
 
   /// Samples per pose, in the mean.
   [[nodiscard]] double readings() const {
@@ -33,6 +34,10 @@ struct PoseGroups {
 /// distance.  Where nothing moves each sample is a pose of its own.
 /// @param samples  those of the problem, in their order
 [[nodiscard]] PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> samples);
+
+/// Poses by run (kRun): the floor, the tyres and the tracking of a run err alike.  As they are where fewer than five runs
+/// are numbered, or not all samples are.
+[[nodiscard]] PoseGroups by_run(const PoseGroups& poses, std::span<const Sample> samples);
 
 /// Number of such poses, one of several samples among them; of samples, where nothing moves.
 [[nodiscard]] int distinct_poses(const AnyProblem& problem, std::span<const Sample> samples);

@@ -59,7 +59,7 @@ class Identification {
     });
     unknown_ = step_.unknown_frames;
     constexpr int kFolds = 10;
-    const PoseGroups poses = pose_groups(*step_.problem, samples);
+    const PoseGroups poses = by_run(pose_groups(*step_.problem, samples), samples);
     poses_.pose = poses.of_sample;
     poses_.fold = folds_of(samples, poses, std::min(kFolds, poses.count));
     poses_.region = pose_regions(*step_.problem, samples, poses);

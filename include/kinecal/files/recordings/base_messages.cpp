@@ -1,0 +1,383 @@
+// Reading the drive of a mobile base.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/files/recordings/base_messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "kinecal/capture/finders/wall_in_scan.hpp"
+#include "kinecal/files/messages/message_fields.hpp"
+#include "kinecal/files/recordings/bag_topics.hpp"
+#include "kinecal/files/recordings/fixed_frames.hpp"
+#include "kinecal/files/recordings/message_decoder.ipp"
+#include "kinecal/files/recordings/read_bag.hpp"
+#include "kinecal/geometry/median.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// Numbers over time.
+template <std::size_t N>
+class Track {
+ public:
+  using Numbers = std::array<double, N>;
+
+  /// A message that is not later than the one before is skipped.
+  void add(double time, const Numbers& numbers) {
+    if (!times_.empty() && !(time > times_.back())) return;
+    times_.push_back(time);
+    numbers_.push_back(numbers);
+  }
+  [[nodiscard]] bool empty() const { return times_.empty(); }
+  [[nodiscard]] const Numbers& last() const { return numbers_.back(); }
+  [[nodiscard]] double last_time() const { return times_.back(); }
+  [[nodiscard]] const std::vector<double>& times() const { return times_; }  ///< seconds
+  /// Interpolated; nullopt outside, or where messages are more than half a second apart.
+  [[nodiscard]] std::optional<Numbers> at(double time) const {
+    constexpr double kGap = 0.5;  // seconds
+    const auto after = std::lower_bound(times_.begin(), times_.end(), time);
+    if (after == times_.end()) return std::nullopt;
+    const auto i = static_cast<std::size_t>(after - times_.begin());
+    if (times_[i] == time) return numbers_[i];
+    if (i == 0 || times_[i] - times_[i - 1] > kGap) return std::nullopt;
+    const double part = (time - times_[i - 1]) / (times_[i] - times_[i - 1]);
+    Numbers between;
+    for (std::size_t k = 0; k < N; ++k) {
+      between[k] = (1.0 - part) * numbers_[i - 1][k] + part * numbers_[i][k];
+    }
+    return between;
+  }
+
+ private:
+  std::vector<double> times_;  ///< seconds
+  std::vector<Numbers> numbers_;
+};
+
+/// The angle about z of a rotation, radians.
+/// @param path  of a quaternion
+[[nodiscard]] double yaw_at(const MessageFields& message, const std::string& path) {
+  const double x = number_at(message, path + ".x"), y = number_at(message, path + ".y"),
+               z = number_at(message, path + ".z"), w = number_at(message, path + ".w");
+  return std::atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z);
+}
+
+/// The angle near another one that differs from it by full turns, radians.
+[[nodiscard]] double unwrapped(double angle, double near) {
+  return near + std::remainder(angle - near, 2.0 * std::numbers::pi);
+}
+
+/// What a scan shows.
+struct SeenWall {
+  double time = 0.0;  ///< seconds
+  double angle = kMissing, distance = kMissing;
+};
+
+/// The side of a joint that is a wheel: 0 left, 1 right; -1: it is none.
+[[nodiscard]] int side_of(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (name.find("wheel") == std::string::npos) return -1;
+  if (name.find("left") != std::string::npos || name.starts_with("l_")) return 0;
+  return name.find("right") != std::string::npos || name.starts_with("r_") ? 1 : -1;
+}
+
+/// Collects the messages of a drive.
+class BaseMessages {
+ public:
+  BaseMessages(std::string path, Diagnostics& diagnostics)
+      : path_(std::move(path)), diagnostics_(diagnostics), decoder_(path_, diagnostics) {}
+
+  /// Reads the bag.
+  void read() {
+    choose_topics();
+    const auto wants = [&](const BagTopic& topic) {
+      const auto chosen = topics_.find(topic.type);
+      return chosen != topics_.end() && chosen->second == topic.name;
+    };
+    const auto handle = [&](const BagMessage& message) {
+      if (const auto content = decoder_.decode(message, ++number_)) take(message, *content);
+    };
+    read_bag(path_, {wants, handle}, diagnostics_);
+  }
+  [[nodiscard]] std::vector<Sample> samples() {
+    const bool says = !odom_.empty() || !gyro_.empty() || !wheels_.empty();
+    if (!says || (walls_.empty() && tracked_.empty())) {
+      diagnostics_.error({path_, 0}, says
+                                         ? "the drive of a base takes scans of a wall "
+                                           "(sensor_msgs/LaserScan) or a tracked pose "
+                                           "(geometry_msgs/PoseStamped): neither is in this bag"
+                                         : "the drive of a base takes nav_msgs/Odometry, "
+                                           "sensor_msgs/Imu or joint states of its wheels: none of "
+                                           "them is in this bag");
+      return {};
+    }
+    say_doubts();
+    return thinned(all_samples());
+  }
+
+ private:
+  /// Of several topics of a type, the one with upstream's name, else the first.
+  void choose_topics() {
+    const std::map<std::string, std::vector<std::string>> usual{
+        {"nav_msgs/Odometry", {"odom"}},
+        {"sensor_msgs/Imu", {"imu", "imu1/imu", "imu/data"}},
+        {"sensor_msgs/LaserScan", {"base_scan", "scan"}},
+        {"sensor_msgs/JointState", {"joint_states"}},
+        {"geometry_msgs/PoseStamped", {}},
+        {"geometry_msgs/PoseWithCovarianceStamped", {}}};
+    for (const TopicContent& topic : bag_topics(path_, diagnostics_)) {
+      const auto known = usual.find(topic.type);
+      if (known == usual.end() || topic.messages == 0) continue;
+      const auto [chosen, is_first] = topics_.try_emplace(topic.type, topic.name);
+      const auto& names = known->second;
+      const auto rank = [&](const std::string& name) {
+        return std::find(names.begin(), names.end(), name) - names.begin();
+      };
+      if (is_first) continue;
+      const std::string other = rank(topic.name) < rank(chosen->second)
+                                    ? std::exchange(chosen->second, topic.name)
+                                    : topic.name;
+      diagnostics_.note({path_, 0}, fmt::format("of the topics of {}, '{}' is used, not '{}'",
+                                                topic.type, chosen->second, other));
+    }
+  }
+
+  void take(const BagMessage& message, const MessageFields& content) {
+    const std::string& type = message.topic.type;
+    const double time =
+        std::chrono::duration<double>(header_stamp(content) - start_of(content)).count();
+    late_[message.topic.name].push_back(
+        1e-9 * static_cast<double>(message.time - header_stamp(content).count()));
+    if (type == "nav_msgs/Odometry") {
+      const double yaw = yaw_at(content, "pose.pose.orientation");
+      odom_.add(time, {number_at(content, "pose.pose.position.x"),
+                       number_at(content, "pose.pose.position.y"),
+                       odom_.empty() ? yaw : unwrapped(yaw, odom_.last()[2])});
+      base_ = text_at(content, "child_frame_id");
+    } else if (type == "sensor_msgs/Imu") {
+      take_rate(time, number_at(content, "angular_velocity.z"));
+    } else if (type == "sensor_msgs/LaserScan") {
+      take_scan(time, content);
+    } else if (type == "sensor_msgs/JointState") {
+      take_wheels(time, content);
+    } else {
+      const std::string pose = type == "geometry_msgs/PoseStamped" ? "pose" : "pose.pose";
+      const double yaw = yaw_at(content, pose + ".orientation");
+      tracked_.add(
+          time, {number_at(content, pose + ".position.x"), number_at(content, pose + ".position.y"),
+                 tracked_.empty() ? yaw : unwrapped(yaw, tracked_.last()[2])});
+    }
+  }
+  /// The first stamp, from which times count: doubles then resolve microseconds.
+  [[nodiscard]] Stamp start_of(const MessageFields& content) {
+    if (!start_) start_ = header_stamp(content);
+    return *start_;
+  }
+  void take_rate(double time, double rate) {
+    double angle = 0.0;
+    if (!gyro_.empty()) {
+      angle = gyro_.last()[0] + 0.5 * (rate + rate_) * (time - gyro_.last_time());
+    }
+    gyro_.add(time, {angle});
+    rate_ = rate;
+  }
+  void take_scan(double time, const MessageFields& content) {
+    std::vector<double> ranges;
+    for (const MessageValue& range : list_at(content, "ranges")) {
+      range.visit_number([&](auto x) { ranges.push_back(static_cast<double>(x)); });
+    }
+    scanner_ = text_at(content, "header.frame_id");
+    const FoundWall found = wall_in_scan(
+        {ranges, number_at(content, "angle_min"), number_at(content, "angle_increment"),
+         number_at(content, "range_min"), number_at(content, "range_max")});
+    walls_.push_back({time});
+    if (found.wall) {
+      walls_.back() = {time, found.wall->angle, found.wall->distance};
+    } else if (without_wall_++ == 0) {
+      refusal_ = found.refusal;
+    }
+  }
+  void take_wheels(double time, const MessageFields& content) {
+    std::array<double, 2> turned{kMissing, kMissing};
+    const MessageValue::List &names = list_at(content, "name"),
+                             &positions = list_at(content, "position");
+    for (std::size_t i = 0; i < std::min(names.size(), positions.size()); ++i) {
+      const auto* name = names[i].as<std::string_view>();
+      const int side = name == nullptr ? -1 : side_of(std::string(*name));
+      if (side < 0) continue;
+      positions[i].visit_number(
+          [&](auto x) { turned[static_cast<std::size_t>(side)] = static_cast<double>(x); });
+    }
+    if (std::isfinite(turned[0] + turned[1])) wheels_.add(time, turned);
+  }
+
+  /// A scanner that hangs upside down turns the other way.
+  [[nodiscard]] bool is_upside_down() const {
+    const std::optional<Pose<double>> pose =
+        recorded_frames(path_).pose(base_.empty() ? "base_link" : base_, scanner_);
+    return pose && pose->rotation(2, 2) < 0.0;
+  }
+  void say_doubts() {
+    constexpr double kLate = 0.2;  // seconds
+    std::string earliest, latest;
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (auto& [topic, late] : late_) {
+      const double typical = median_of(std::move(late));
+      if (typical < least) least = typical, earliest = topic;
+      if (typical > most) most = typical, latest = topic;
+    }
+    if (most - least > kLate) {
+      diagnostics_.doubt({path_, 0},
+                         fmt::format("stamps of '{}' are {:.2f} s earlier than those of '{}', "
+                                     "compared with the time of recording: two clocks?",
+                                     latest, most - least, earliest));
+    }
+    if (without_wall_ > 0) {
+      diagnostics_.note({path_, 0}, fmt::format("{} of {} scans show no wall; the first: {}",
+                                                without_wall_, walls_.size(), refusal_));
+    }
+  }
+
+  [[nodiscard]] std::vector<Sample> all_samples() {
+    const double side = !walls_.empty() && is_upside_down() ? -1.0 : 1.0;
+    std::vector<Sample> samples;
+    const auto add = [&](double time) -> Sample& {
+      Sample& sample = samples.emplace_back();
+      sample.stamp = *start_ + std::chrono::nanoseconds(std::llround(1e9 * time));
+      sample.source = fmt::format("{}:{}", path_, samples.size());
+      sample.conditions["time"] = time;
+      const auto set = [&](const auto& track, std::vector<const char*> names) {
+        if (track.empty()) return;
+        const auto at = track.at(time);
+        for (std::size_t k = 0; k < names.size(); ++k) {
+          sample.conditions[names[k]] = at ? (*at)[k] : kMissing;
+        }
+      };
+      set(odom_, {"odom_x", "odom_y", "odom_yaw"});
+      set(gyro_, {"gyro_yaw"});
+      set(wheels_, {"left_wheel", "right_wheel"});
+      set(tracked_, {"track_x", "track_y", "track_yaw"});
+      return sample;
+    };
+    for (const SeenWall& wall : walls_) {
+      Sample& sample = add(wall.time);
+      sample.conditions["wall_angle"] = side * wall.angle;
+      sample.conditions["wall_distance"] = wall.distance;
+    }
+    for (const double time : walls_.empty() ? tracked_.times() : std::vector<double>()) {
+      (void)add(time);
+    }
+    check_gyro(samples);
+    return samples;
+  }
+  /// A gyroscope that turns against the odometry, or about another axis.
+  void check_gyro(const std::vector<Sample>& samples) {
+    if (odom_.empty() || gyro_.empty()) return;
+    double product = 0.0, of_odom = 0.0;
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+      const auto moved = [&](const char* name) {
+        return samples[i].conditions.at(name) - samples[i - 1].conditions.at(name);
+      };
+      const double odom = moved("odom_yaw"), gyro = moved("gyro_yaw");
+      if (!std::isfinite(odom + gyro)) continue;
+      product += odom * gyro;
+      of_odom += odom * odom;
+    }
+    if (!(of_odom > 0.01)) return;
+    const double slope = product / of_odom;
+    if (slope > 0.5 && slope < 2.0) return;
+    diagnostics_.doubt(
+        {path_, 0},
+        fmt::format("the gyroscope turns by {:.2f} rad about z where the odometry turns by one: {}",
+                    slope,
+                    slope < -0.5 ? "its z axis points down?" : "its z axis is not vertical?"));
+  }
+
+  /// Numbers runs, and leaves out samples that are near to others or stand still.
+  [[nodiscard]] std::vector<Sample> thinned(std::vector<Sample> samples) const {
+    constexpr double kSpeed = 0.01, kStill = 0.5, kFar = 0.05;  // m/s or rad/s, s, m or rad
+    const std::vector<std::string> names =
+        !odom_.empty()      ? std::vector<std::string>{"odom_x", "odom_y", "odom_yaw"}
+        : !tracked_.empty() ? std::vector<std::string>{"track_x", "track_y", "track_yaw"}
+        : !wheels_.empty()  ? std::vector<std::string>{"left_wheel", "right_wheel"}
+                            : std::vector<std::string>{"gyro_yaw"};
+    const auto apart = [&](const Sample& a, const Sample& b) {
+      double most = 0.0;
+      for (const std::string& name : names) {
+        const double by = std::abs(b.conditions.at(name) - a.conditions.at(name));
+        if (!std::isfinite(by)) return by;
+        most = std::max(most, by);
+      }
+      return most;
+    };
+    std::vector<Sample> kept;
+    int run = 0;
+    double still_since = 0.0;  // of the last sample that moved
+    bool moves = false;
+    const auto keep = [&](const Sample& sample) {
+      kept.push_back(sample);
+      kept.back().conditions[kRun] = run;
+    };
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+      const Sample &last = samples[i - 1], &sample = samples[i];
+      const double time = sample.conditions.at("time"),
+                   speed = apart(last, sample) / (time - last.conditions.at("time"));
+      if (!std::isfinite(speed)) continue;
+      if (speed > kSpeed) {
+        if (!moves) ++run, keep(last);
+        moves = true;
+        still_since = time;
+        if (apart(kept.back(), sample) >= kFar) keep(sample);
+      } else if (moves && time - still_since >= kStill) {
+        keep(sample);
+        moves = false;
+      }
+    }
+    return kept;
+  }
+
+  std::string path_;
+  Diagnostics& diagnostics_;
+  MessageDecoder decoder_;
+  int number_ = 0;
+  std::map<std::string, std::string> topics_;  ///< name of the chosen one, by type
+  std::optional<Stamp> start_;
+  std::map<std::string, std::vector<double>> late_;  ///< recorded after its stamp, s, by topic
+  Track<3> odom_, tracked_;                          ///< x, y, metres, yaw, radians
+  Track<1> gyro_;                                    ///< integral of its rate, radians
+  Track<2> wheels_;                                  ///< left and right, radians
+  double rate_ = 0.0;                                ///< of the gyroscope, last, rad/s
+  std::vector<SeenWall> walls_;                      ///< one of each scan
+  int without_wall_ = 0;                             ///< scans
+  std::string refusal_, base_, scanner_;             ///< of the first of them; frames
+};
+
+}  // namespace
+}  // namespace detail
+
+bool shows_base(const BagTopic& topic) {
+  return topic.type == "sensor_msgs/LaserScan" || topic.type == "geometry_msgs/PoseStamped" ||
+         topic.type == "geometry_msgs/PoseWithCovarianceStamped";
+}
+
+std::vector<Sample> read_base_drive(const std::string& path, Diagnostics& diagnostics) {
+  detail::BaseMessages messages(path, diagnostics);
+  messages.read();
+  return messages.samples();
+}
+
+}  // namespace kinecal

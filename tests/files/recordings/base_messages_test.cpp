@@ -1,0 +1,181 @@
+// Drives of a mobile base from bags.
+#include "kinecal/files/recordings/base_messages.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "kinecal/files/messages/make.hpp"
+#include "kinecal/files/messages/message_fields.hpp"
+#include "kinecal/files/recordings/bag_output.hpp"
+#include "kinecal/files/recordings/read_recording.hpp"
+#include "kinecal/study/simulated_base.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace kinecal {
+namespace {
+
+using detail::fields;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// What is wrong with a bag.
+struct BagOptions {
+  bool has_scans = true, has_tracked = false, has_odometry = true;
+  double gyro_sign = 1.0;
+  double late_imu = 0.0;  ///< stamps of the IMU behind those of the odometry, seconds
+};
+
+MessageFields header(double time, const std::string& frame) {
+  return fields("stamp", detail::time_fields(Stamp(std::llround(1e9 * (1000.0 + time)))),
+                "frame_id", frame);
+}
+MessageFields pose(double x, double y, double yaw) {
+  return fields("position", fields("x", x, "y", y, "z", 0.0), "orientation",
+                fields("x", 0.0, "y", 0.0, "z", std::sin(0.5 * yaw), "w", std::cos(0.5 * yaw)));
+}
+
+/// A scan of a wall; of nothing if the wall is not seen.
+MessageFields scan(double time, double angle, double distance) {
+  constexpr double kFirst = -1.5, kStep = 0.01;
+  std::vector<double> ranges;
+  for (int i = 0; i <= 300; ++i) {
+    const double ahead = std::cos(kFirst + kStep * i - angle);
+    ranges.push_back(ahead > 0.1 ? distance / ahead : std::numeric_limits<double>::infinity());
+  }
+  return fields("header", header(time, "laser_link"), "angle_min", kFirst, "angle_max", 1.5,
+                "angle_increment", kStep, "range_min", 0.05, "range_max", 30.0, "ranges",
+                detail::numbers(ranges));
+}
+
+/// Writes a drive: each run, then a second at rest.
+void write_drive(const std::string& path, const SimulatedBase& base, const BagOptions& of) {
+  BagOutput bag(path, Encoding::ros1);
+  const std::vector<Sample> samples = simulate_base(base, turns_and_straight_runs(), 1).samples;
+  double time = 0.0, gyro = 0.0;
+  const auto write = [&](const char* topic, const char* type, double stamp,
+                         const MessageFields& message) {
+    bag.write({topic, type}, std::llround(1e9 * (1000.01 + stamp)), message);
+  };
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto& now = samples[i].conditions;
+    const bool begins = i == 0 || samples[i - 1].conditions.at(kRun) != now.at(kRun);
+    const double step = begins ? 1.0 : now.at("time") - samples[i - 1].conditions.at("time");
+    const double rate = begins ? 0.0 : of.gyro_sign * (now.at("gyro_yaw") - gyro) / step;
+    gyro = now.at("gyro_yaw");
+    // The rate is constant over the step: stamped just inside of it.
+    for (const double part : {1e-3, 0.25, 0.5, 0.75, 1.0}) {
+      const double at = time + step * part;
+      MessageFields imu = fields("header", header(at - of.late_imu, "imu_link"), "angular_velocity",
+                                 fields("x", 0.0, "y", 0.0, "z", rate));
+      write("imu", "sensor_msgs/Imu", at, imu);
+    }
+    const int steps = begins ? 4 : 1;
+    for (int n = 1; n <= steps; ++n) {
+      const double at = time + step * n / steps;
+      if (of.has_odometry) {
+        write(
+            "odom", "nav_msgs/Odometry", at,
+            fields("header", header(at, "odom"), "child_frame_id", std::string("base_link"), "pose",
+                   fields("pose", pose(now.at("odom_x"), now.at("odom_y"), now.at("odom_yaw")))));
+      }
+      if (of.has_tracked) {
+        write("tracker", "geometry_msgs/PoseStamped", at,
+              fields("header", header(at, "world"), "pose",
+                     pose(now.at("track_x"), now.at("track_y"), now.at("track_yaw"))));
+      }
+      if (of.has_scans) {
+        const double angle = now.at("wall_angle");
+        const double seen = std::isfinite(angle) ? angle : 3.0;
+        write("base_scan", "sensor_msgs/LaserScan", at,
+              scan(at, seen, std::isfinite(angle) ? now.at("wall_distance") : 1.0));
+      }
+    }
+    time += step;
+  }
+  bag.finish();
+}
+
+class BaseDrive : public testing::Test {
+ protected:
+  std::vector<Sample> read(const BagOptions& of) {
+    const std::string path = (folder_.path() / "drive.bag").string();
+    write_drive(path,
+                SimulatedBase{.tracked_position = 1e-6,
+                              .tracked_angle = 1e-6,
+                              .wall_distance = 1e-6,
+                              .rolling = 1e-5},
+                of);
+    found_ = {};
+    return read_recording(path, found_).samples;
+  }
+
+  test::TemporaryFolder folder_;
+  Diagnostics found_;
+};
+
+TEST_F(BaseDrive, ScansShowTheWallAndRunsAreNumbered) {
+  const std::vector<Sample> samples = read({});
+  EXPECT_THAT(found_.errors, IsEmpty());
+  EXPECT_THAT(found_.doubts, IsEmpty());
+  ASSERT_FALSE(samples.empty());
+  EXPECT_EQ(samples.back().conditions.at(kRun),
+            static_cast<double>(turns_and_straight_runs().size()));
+  double turned = 0.0;  // of the first run, by the odometry: a full turn, without a jump
+  int walls = 0;
+  for (const Sample& sample : samples) {
+    const auto& of = sample.conditions;
+    if (of.at(kRun) == 1.0) turned = of.at("odom_yaw") - samples.front().conditions.at("odom_yaw");
+    if (of.at(kRun) == 1.0) {
+      EXPECT_NEAR(of.at("gyro_yaw") - samples.front().conditions.at("gyro_yaw"), turned, 0.1);
+    }
+    walls += std::isfinite(of.at("wall_angle")) ? 1 : 0;
+  }
+  EXPECT_NEAR(turned, 2.0 * 3.14159265, 0.05);
+  EXPECT_GT(walls, 40);
+  ASSERT_FALSE(found_.notes.empty());
+  EXPECT_THAT(found_.notes.front(), HasSubstr("scans show no wall; the first: "));
+}
+
+TEST_F(BaseDrive, ATrackedPoseNeedsNoScans) {
+  const std::vector<Sample> samples = read({.has_scans = false, .has_tracked = true});
+  EXPECT_THAT(found_.errors, IsEmpty());
+  ASSERT_GT(samples.size(), 50u);
+  EXPECT_TRUE(samples[10].conditions.contains("track_yaw"));
+  EXPECT_FALSE(samples[10].conditions.contains("wall_angle"));
+}
+
+TEST_F(BaseDrive, WhatIsMissingIsSaid) {
+  EXPECT_THAT(read({.has_scans = false}), IsEmpty());
+  ASSERT_EQ(found_.errors.size(), 1u);
+  EXPECT_THAT(found_.errors[0], HasSubstr("no messages of robot_calibration_msgs"));
+  found_ = {};
+  EXPECT_THAT(read_base_drive((folder_.path() / "drive.bag").string(), found_), IsEmpty());
+  ASSERT_EQ(found_.errors.size(), 1u);
+  EXPECT_THAT(found_.errors[0], HasSubstr("takes scans of a wall"));
+}
+
+TEST_F(BaseDrive, AGyroscopeAloneIsEnough) {
+  const std::vector<Sample> samples = read({.has_odometry = false});
+  EXPECT_THAT(found_.errors, IsEmpty());
+  ASSERT_GT(samples.size(), 30u);
+  EXPECT_EQ(samples.back().conditions.at(kRun), 6.0);  // it does not see straight runs
+}
+
+TEST_F(BaseDrive, AGyroscopeThatTurnsTheOtherWayAndClocksThatDifferAreDoubts) {
+  (void)read({.gyro_sign = -1.0});
+  ASSERT_EQ(found_.doubts.size(), 1u);
+  EXPECT_THAT(found_.doubts[0], HasSubstr("its z axis points down?"));
+  (void)read({.late_imu = 2.0});
+  ASSERT_FALSE(found_.doubts.empty());
+  EXPECT_THAT(found_.doubts[0], HasSubstr("two clocks?"));
+}
+
+}  // namespace
+}  // namespace kinecal

@@ -1,0 +1,141 @@
+// A mobile base by a configuration: wheels, odometry and gyroscope as other error blocks are.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/config/registry.hpp"
+#include "kinecal/files/results/base_file.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
+#include "kinecal/samples/joint_moves.hpp"
+#include "kinecal/study/simulated_base.hpp"
+#include "support/robots.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+SimulatedBase wrong_base() {
+  SimulatedBase base;
+  base.track_width_scale = 1.02;
+  base.left_rollout_scale = base.right_rollout_scale = 0.98;
+  base.imu_scale = 0.98;
+  return base;
+}
+
+/// @param blocks  "{name: base, type: ...}", in lines
+CalibrationSetup setup_of(const std::string& free, const std::string& blocks,
+                          std::vector<Sample> samples) {
+  Diagnostics found;
+  CalibrationSetup setup{.robot = test::mobile_manipulator(),
+                         .config = parse_config("base_link: base_link\nmodels: []\nfree_params: [" +
+                                                    free + "]\nerror_blocks:\n" + blocks,
+                                                "base.yaml", found)};
+  EXPECT_THAT(found.errors, IsEmpty());
+  setup.samples = std::move(samples);
+  return setup;
+}
+
+/// Expects a parameter within four standard deviations of the truth, which are below 0.6 %.
+void expect_found(const CalibratedRobot& calibrated, const std::string& name, double truth) {
+  const int index = calibrated.result.table.index(name);
+  const std::optional<double> deviation = calibrated.deviation(index);
+  ASSERT_TRUE(deviation) << name;
+  EXPECT_LT(*deviation, 0.006) << name;
+  EXPECT_NEAR(calibrated.result.table[index].value, truth, 4.0 * *deviation) << name;
+}
+
+TEST(CalibrateBase, ByAWallAsBaseCalibrationDoes) {
+  const CalibratedRobot calibrated =
+      calibrate_robot(setup_of("base_track_width_scale, base_rollout_scale, imu_scale, imu_bias",
+                               "- {name: base, type: odometry_to_wall, x: 0.23, translation_scale: "
+                               "500, rotation_scale: 500}\n"
+                               "- {name: imu, type: gyro_to_wall}\n",
+                               simulate_base(wrong_base(), turns_and_straight_runs(), 5).samples));
+  ASSERT_TRUE(calibrated.result.converged);
+  expect_found(calibrated, "base_track_width_scale", 1.02);
+  expect_found(calibrated, "base_rollout_scale", 0.98);
+  expect_found(calibrated, "imu_scale", 0.98);
+  EXPECT_EQ(calibrated.judgement.verdict, Grade::good);
+}
+
+TEST(CalibrateBase, ByATrackedPoseWithTheMountOfTheLaser) {
+  SimulatedBase base = wrong_base();
+  base.left_rollout_scale = 0.99;
+  base.mount = {0.25, 0.01, 0.02};
+  std::vector<BaseRun> runs = turns_and_straight_runs();
+  for (const double turn : {0.6, -0.6, 0.3, -0.3}) runs.push_back({0.4, turn, 6.0});
+  const CalibratedRobot calibrated = calibrate_robot(setup_of(
+      "base_track_width_scale, base_left_rollout_scale, base_right_rollout_scale, base_x, base_y, "
+      "base_yaw",
+      "- {name: base, type: differential_to_pose, wheel_radius: 0.0605, track_width: 0.37476, x: "
+      "0.2, translation_scale: 500, rotation_scale: 500}\n",
+      simulate_base(base, runs, 6).samples));
+  ASSERT_TRUE(calibrated.result.converged);
+  expect_found(calibrated, "base_track_width_scale", 1.02);
+  expect_found(calibrated, "base_left_rollout_scale", 0.99);
+  expect_found(calibrated, "base_right_rollout_scale", 0.98);
+  expect_found(calibrated, "base_x", 0.25);
+  expect_found(calibrated, "base_y", 0.01);
+  expect_found(calibrated, "base_yaw", 0.02);
+  EXPECT_EQ(calibrated.judgement.verdict, Grade::good);
+}
+
+/// Under upstream's keys.
+TEST(CalibrateBase, TheFileHasUpstreamsKeys) {
+  CalibratedRobot calibrated =
+      calibrate_robot(setup_of("base_track_width_scale, base_rollout_scale, imu_scale",
+                               "- {name: base, type: odometry_to_wall, x: 0.23, translation_scale: "
+                               "500, rotation_scale: 500}\n"
+                               "- {name: imu, type: gyro_to_wall}\n",
+                               simulate_base(wrong_base(), turns_and_straight_runs(), 5).samples));
+  calibrated.result.table["base_track_width_scale"].value = 1.02;
+  calibrated.result.table["base_rollout_scale"].value = 0.98;
+  calibrated.result.table["imu_scale"].value = 0.975;
+  const int rollout = calibrated.result.table.index("base_rollout_scale");
+  EXPECT_EQ(base_calibration_yaml(calibrated.setup.calibration, calibrated.result.table,
+                                  {{rollout, 0.00123}}),
+            "track_width_scale: 1.02\nrollout_scale: 0.98  # +- 0.0012\nimu_scale: "
+            "0.975\nimu_bias: 0.0\n");
+}
+
+TEST(CalibrateBase, SizesArePositive) {
+  Diagnostics found;
+  (void)parse_config(
+      "base_link: base_link\nmodels: []\nfree_params: [base_rollout_scale]\nerror_blocks:\n"
+      "- {name: base, type: differential_to_pose, wheel_radius: 0}\n",
+      "base.yaml", found);
+  ASSERT_EQ(found.errors.size(), 1u);
+  EXPECT_THAT(found.errors[0], HasSubstr("wheel_radius is not positive"));
+}
+
+TEST(CalibrateBase, ASampleOfAnotherRunIsNotTheOneBefore) {
+  std::vector<Sample> samples =
+      simulate_base(SimulatedBase{}, turns_and_straight_runs(), 1).samples;
+  set_before(samples);
+  int without = 0;
+  for (const Sample& sample : samples) without += sample.before.empty() ? 1 : 0;
+  EXPECT_EQ(without, static_cast<int>(turns_and_straight_runs().size()));
+}
+
+/// What is not a number does not count, and the sample before is the last in which it does.
+TEST(CalibrateBase, ASampleWithoutTheWallIsSkipped) {
+  std::vector<Sample> samples(3);
+  const double kNone = std::numeric_limits<double>::quiet_NaN();
+  samples[0].conditions = {{"odom_x", 1.0}, {"wall_angle", 0.1}};
+  samples[1].conditions = {{"odom_x", 2.0}, {"wall_angle", kNone}};
+  samples[2].conditions = {{"odom_x", 3.0}, {"wall_angle", 0.2}};
+  set_before(samples, {"odom_x", "wall_angle"});
+  EXPECT_EQ(samples[2].before.at("odom_x"), 1.0);
+  set_before(samples, {"odom_x"});
+  EXPECT_EQ(samples[2].before.at("odom_x"), 2.0);
+}
+
+}  // namespace
+}  // namespace kinecal

@@ -1,0 +1,197 @@
+// Bases that are simulated: errors of 2 % are recovered within honest limits, slips are left out; and what base_calibration
+// of robot_calibration computes from the same data.
+#include "kinecal/study/simulated_base.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "support/base_problem.hpp"
+#include "support/interval_coverage.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::HasSubstr;
+
+/// A base with errors of 2 %.
+SimulatedBase wrong_base() {
+  SimulatedBase base;
+  base.track_width_scale = 1.02;
+  base.left_rollout_scale = base.right_rollout_scale = 0.98;
+  base.imu_scale = 0.98;
+  base.imu_bias = 0.002;
+  return base;
+}
+
+/// With a millionth of the noise.
+SimulatedBase exact(SimulatedBase base) {
+  for (double* noise : {&base.tracked_position, &base.tracked_angle, &base.wall_distance,
+                        &base.rolling, &base.gyro}) {
+    *noise *= 1e-6;
+  }
+  return base;
+}
+
+/// Turns in place, straight runs and arcs.
+std::vector<BaseRun> all_runs() {
+  std::vector<BaseRun> runs = turns_and_straight_runs();
+  for (const double turn : {0.6, -0.6, 0.3, -0.3}) runs.push_back({0.4, turn, 6.0});
+  return runs;
+}
+
+double value(const JudgedResult& judged, const std::string& name) {
+  return judged.result.table["base_" + name].value;
+}
+
+template <class B>
+JudgedResult calibrated(const SimulatedBase& base, const SimulatedBase& seen_as,
+                        const std::vector<std::string>& names, std::uint64_t seed = 1) {
+  return test::judged_base(test::block_of<B>(seen_as), names,
+                           simulate_base(base, all_runs(), seed).samples);
+}
+
+TEST(SimulatedBase, ErrorsAreFound) {
+  constexpr double kExact = 1e-7;
+  const SimulatedBase noisy = wrong_base(), base = exact(noisy);
+  const std::vector<std::string> scales{"track_width_scale", "rollout_scale"};
+  for (const JudgedResult& judged : {calibrated<DifferentialToPose>(base, noisy, scales),
+                                     calibrated<DifferentialToWall>(base, noisy, scales),
+                                     calibrated<OdometryToPose>(base, noisy, scales),
+                                     calibrated<OdometryToWall>(base, noisy, scales)}) {
+    ASSERT_TRUE(judged.result.converged) << judged.result.termination;
+    EXPECT_NEAR(value(judged, "track_width_scale"), 1.02, kExact);
+    EXPECT_NEAR(value(judged, "rollout_scale"), 0.98, kExact);
+  }
+  for (const JudgedResult& judged : {calibrated<GyroToPose>(base, noisy, {"scale", "bias"}),
+                                     calibrated<GyroToWall>(base, noisy, {"scale", "bias"})}) {
+    EXPECT_NEAR(value(judged, "scale"), 0.98, kExact);
+    EXPECT_NEAR(value(judged, "bias"), 0.002, kExact);
+  }
+}
+
+TEST(SimulatedBase, WheelsAndTheMountOfTheLaserAreFoundTogether) {
+  SimulatedBase noisy = wrong_base(), base = exact(noisy);
+  base.left_rollout_scale = 0.985;
+  base.mount = {0.26, -0.02, 0.05};
+  const JudgedResult judged = calibrated<DifferentialToPose>(
+      base, noisy,
+      {"track_width_scale", "left_rollout_scale", "right_rollout_scale", "x", "y", "yaw"});
+  const std::map<std::string, double> truth{{"track_width_scale", 1.02},
+                                            {"left_rollout_scale", 0.985},
+                                            {"right_rollout_scale", 0.98},
+                                            {"x", 0.26},
+                                            {"y", -0.02},
+                                            {"yaw", 0.05}};
+  for (const auto& [name, is] : truth) EXPECT_NEAR(value(judged, name), is, 1e-7) << name;
+}
+
+/// Both wheels and each of them: a combination that nothing determines keeps its start, and is said.
+TEST(SimulatedBase, WhatIsNotDeterminedIsSaid) {
+  const JudgedResult judged = calibrated<DifferentialToPose>(
+      wrong_base(), wrong_base(),
+      {"track_width_scale", "rollout_scale", "left_rollout_scale", "right_rollout_scale"});
+  EXPECT_EQ(judged.assessments.back().observability.rank, 3);
+}
+
+/// @param of_runs  how far runs differ
+/// @param exceed   few runs of tracked poses: intervals may be wider
+template <class B>
+void expect_coverage(const char* name, const std::vector<std::string>& names,
+                     const std::map<std::string, double>& truth, double of_runs,
+                     bool exceed = false) {
+  const int repetitions = test::repetitions(100, 12);
+  test::IntervalCoverage coverage(name);
+  for (int n = 0; n < repetitions; ++n) {
+    SimulatedBase base = wrong_base();
+    base.of_runs = of_runs;
+    const JudgedResult judged = calibrated<B>(base, base, names, static_cast<std::uint64_t>(n + 1));
+    ASSERT_TRUE(judged.result.converged);
+    EXPECT_NE(judged.judgement.verdict, Grade::do_not_use) << n;
+    coverage.add(judged.result, judged.assessments.back(),
+                 [&](const std::string& of) { return truth.at(of.substr(5)); });
+  }
+  coverage.check(exceed);
+}
+
+TEST(BaseCoverage, IntervalsOfWheelsCoverTheTruth) {
+  expect_coverage<DifferentialToPose>(
+      "wheels, tracked pose", {"track_width_scale", "left_rollout_scale", "right_rollout_scale"},
+      {{"track_width_scale", 1.02}, {"left_rollout_scale", 0.98}, {"right_rollout_scale", 0.98}},
+      0.0);
+}
+TEST(BaseCoverage, IntervalsByTheWallCoverTheTruth) {
+  expect_coverage<OdometryToWall>("odometry, wall", {"track_width_scale", "rollout_scale"},
+                                  {{"track_width_scale", 1.02}, {"rollout_scale", 0.98}}, 0.0,
+                                  true);
+}
+TEST(BaseCoverage, IntervalsOfTheGyroscopeCoverTheTruth) {
+  expect_coverage<GyroToWall>("gyroscope, wall", {"scale", "bias"},
+                              {{"scale", 0.98}, {"bias", 0.002}}, 0.0);
+}
+/// The floor of each run is another one: samples of a run err alike.
+TEST(BaseCoverage, IntervalsCoverTheTruthWhereRunsDiffer) {
+  expect_coverage<DifferentialToPose>(
+      "wheels, runs that differ by 0.5 %", {"track_width_scale", "rollout_scale"},
+      {{"track_width_scale", 1.02}, {"rollout_scale", 0.98}}, 0.005);
+}
+
+TEST(SimulatedBase, SlipsAreLeftOut) {
+  SimulatedBase base = wrong_base();
+  base.slip_chance = 0.03;
+  const BaseRecording recording = simulate_base(base, all_runs(), 3);
+  ASSERT_GT(recording.slipped.size(), 3u);
+  const JudgedResult judged =
+      test::judged_base(test::block_of<DifferentialToPose>(base),
+                        {"track_width_scale", "rollout_scale"}, recording.samples);
+  std::set<int> left_out;
+  for (const LeftOutSample& sample : judged.left_out) {
+    left_out.insert(sample.number - 1);
+    EXPECT_THAT(sample.why, HasSubstr("_wheel' advanced by 0.8"));
+    EXPECT_THAT(sample.why, HasSubstr("too much: it slipped"));
+  }
+  EXPECT_EQ(left_out, std::set<int>(recording.slipped.begin(), recording.slipped.end()));
+  EXPECT_NEAR(value(judged, "track_width_scale"), 1.02, 0.002);
+  EXPECT_NEAR(value(judged, "rollout_scale"), 0.98, 0.002);
+}
+
+/// The mean of (scan - odometry) / odometry over turns in place, plus one, as base_calibration of robot_calibration has it.
+/// @param counted  "odom_yaw" or "gyro_yaw"
+double upstream_scale(const std::vector<Sample>& samples, const std::string& counted) {
+  double sum = 0.0;
+  int turns = 0;
+  for (std::size_t first = 0, last = 0; first < samples.size(); first = last + 1) {
+    const auto at = [&](std::size_t i, const std::string& name) {
+      return samples[i].conditions.at(name);
+    };
+    for (last = first; last + 1 < samples.size() && at(last + 1, kRun) == at(first, kRun);) ++last;
+    const double said = at(last, counted) - at(first, counted);
+    if (std::abs(said) < 4.0) continue;  // not a full turn
+    const double full = std::copysign(2.0 * std::numbers::pi, said),
+                 swept = at(first, "wall_angle") - at(last, "wall_angle");
+    sum += (full + swept) / said;
+    ++turns;
+  }
+  return sum / turns;
+}
+
+TEST(SimulatedBase, UpstreamsFormulaHasTheReciprocalOfTheTrackWidth) {
+  const SimulatedBase base = exact(wrong_base());
+  const std::vector<Sample> samples = simulate_base(base, turns_and_straight_runs(), 1).samples;
+  // The true turn over the reported one: the odometry divides by the track width, and rolls less.
+  EXPECT_NEAR(upstream_scale(samples, "odom_yaw"), 0.98 / 1.02, 1e-6);
+  const JudgedResult judged = test::judged_base(test::block_of<OdometryToWall>(wrong_base()),
+                                                {"track_width_scale", "rollout_scale"}, samples);
+  EXPECT_NEAR(value(judged, "track_width_scale") / value(judged, "rollout_scale"), 1.02 / 0.98,
+              1e-6);
+}
+
+}  // namespace
+}  // namespace kinecal
