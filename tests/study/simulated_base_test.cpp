@@ -103,16 +103,22 @@ TEST(SimulatedBase, WhatIsNotDeterminedIsSaid) {
 
 /// @param of_runs  how far runs differ
 /// @param exceed   few runs of tracked poses: intervals may be wider
+/// @param numbered false: the recording does not say where a run begins
 template <class B>
 void expect_coverage(const char* name, const std::vector<std::string>& names,
                      const std::map<std::string, double>& truth, double of_runs,
-                     bool exceed = false) {
+                     bool exceed = false, bool numbered = true) {
   const int repetitions = test::repetitions(100, 12);
   test::IntervalCoverage coverage(name);
   for (int n = 0; n < repetitions; ++n) {
     SimulatedBase base = wrong_base();
     base.of_runs = of_runs;
-    const JudgedResult judged = calibrated<B>(base, base, names, static_cast<std::uint64_t>(n + 1));
+    std::vector<Sample> samples =
+        simulate_base(base, all_runs(), static_cast<std::uint64_t>(n + 1)).samples;
+    for (Sample& sample : samples) {
+      if (!numbered) sample.conditions.erase(kRun);
+    }
+    const JudgedResult judged = test::judged_base(test::block_of<B>(base), names, samples);
     ASSERT_TRUE(judged.result.converged);
     EXPECT_NE(judged.judgement.verdict, Grade::do_not_use) << n;
     coverage.add(judged.result, judged.assessments.back(),
@@ -141,6 +147,12 @@ TEST(BaseCoverage, IntervalsCoverTheTruthWhereRunsDiffer) {
   expect_coverage<DifferentialToPose>(
       "wheels, runs that differ by 0.5 %", {"track_width_scale", "rollout_scale"},
       {{"track_width_scale", 1.02}, {"rollout_scale", 0.98}}, 0.005);
+}
+TEST(BaseCoverage, IntervalsCoverTheTruthWhereRunsDifferAndAreNotNumbered) {
+  expect_coverage<DifferentialToPose>("wheels, runs that differ by 0.5 % and are not numbered",
+                                      {"track_width_scale", "rollout_scale"},
+                                      {{"track_width_scale", 1.02}, {"rollout_scale", 0.98}}, 0.005,
+                                      false, false);
 }
 
 TEST(SimulatedBase, SlipsAreLeftOut) {

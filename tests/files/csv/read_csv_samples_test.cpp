@@ -6,6 +6,7 @@
 
 #include <clocale>
 #include <locale>
+#include <numbers>
 
 #include "support/paths.hpp"
 #include "support/temporary_folder.hpp"
@@ -572,6 +573,36 @@ TEST_F(ReadCsvSamples, JointsAloneNeedNoObservations) {
   EXPECT_THAT(diagnostics_.errors, IsEmpty());
   (void)read_csv_mapping(path, diagnostics_);
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("no observation is given")));
+}
+
+TEST_F(ReadCsvSamples, AddsUpIncrementsOfEachRun) {
+  const char* const mapping = R"(conditions: {run: run}
+increments:
+  left_wheel: l
+  track_x: {column: x, unit: millimetres}
+  track_y: {column: y, unit: millimetres}
+  track_yaw: {column: turn, unit: degrees}
+)";
+  const auto samples =
+      read("run,l,x,y,turn\n1,2,1000,0,90\n1,3,1000,0,0\n1,1,,0,0\n2,4,0,500,-90\n", mapping);
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.notes, ElementsAre(HasSubstr("1 row without all increments")));
+  ASSERT_EQ(samples.size(), 5u);  // where each run began, too
+  const double kTurn = std::numbers::pi / 2.0, kAlong[][4] = {{0, 0, 0, 0},
+                                                              {2, 1, 0, kTurn},
+                                                              {5, 1, 1, kTurn},
+                                                              {5, 1, 1, kTurn},
+                                                              {9, 0.5, 1, 0}};
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto& conditions = samples[i].conditions;
+    EXPECT_EQ(conditions.at("run"), i < 3 ? 1 : 2);
+    EXPECT_EQ(conditions.at("left_wheel"), kAlong[i][0]);
+    EXPECT_NEAR(conditions.at("track_x"), kAlong[i][1], 1e-12);
+    EXPECT_NEAR(conditions.at("track_y"), kAlong[i][2], 1e-12);
+    EXPECT_NEAR(conditions.at("track_yaw"), kAlong[i][3], 1e-12);
+  }
+  (void)read("l\n1\n", "conditions: {left_wheel: l}\nincrements: {left_wheel: l}\n");
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("'left_wheel' is a condition already")));
 }
 
 TEST_F(ReadCsvSamples, ReportsFilesThatAreEmptyOrMissing) {

@@ -345,12 +345,35 @@ void read_csv_velocities(ConfigMap& file, CsvMapping& mapping) {
   }
 }
 
-/// `conditions:`
-void read_csv_conditions(ConfigMap& file, CsvMapping& mapping) {
-  const auto conditions = file.map("conditions", "conditions");
+/// `conditions:` and `increments:`
+void read_csv_conditions(ConfigMap& file, const char* key, CsvMapping& mapping) {
+  const auto conditions = file.map(key, key);
   if (!conditions) return;
+  const bool is_increment = std::string_view(key) == "increments";
   for (const ConfigEntry& entry : conditions->entries()) {
-    mapping.conditions.push_back({entry.key, read_csv_sum(*conditions, entry.value, entry.place)});
+    const auto same = [&](const CsvCondition& other) { return other.name == entry.key; };
+    if (std::any_of(mapping.conditions.begin(), mapping.conditions.end(), same)) {
+      file.error(entry.place, "'" + entry.key + "' is a condition already");
+    }
+    CsvCondition& condition = mapping.conditions.emplace_back();
+    condition.name = entry.key;
+    condition.increment = is_increment;
+    if (!entry.value.is_map()) {
+      condition.columns = read_csv_sum(*conditions, entry.value, entry.place);
+      continue;
+    }
+    auto map = file.map(entry, key);
+    if (!map) continue;
+    if (const ConfigEntry* column = map->find("column")) {
+      condition.columns = read_csv_sum(*map, column->value, column->place);
+    } else {
+      map->error(entry.place, "no column is given");
+    }
+    if (map->peek("unit") != nullptr) {
+      const std::string unit = read_choice(*map, "unit", "degrees", {"degrees", "millimetres"});
+      condition.unit = {unit == "degrees", unit == "millimetres"};
+    }
+    map->report_unknown();
   }
 }
 
@@ -365,18 +388,20 @@ void read_csv_conditions(ConfigMap& file, CsvMapping& mapping) {
   read_csv_joints(file, "sliding", kLengths, mapping.joints);
   read_csv_poses(file, mapping);
   read_csv_velocities(file, mapping);
-  read_csv_conditions(file, mapping);
+  read_csv_conditions(file, "conditions", mapping);
+  read_csv_conditions(file, "increments", mapping);
   for (const ConfigEntry& entry : file.list("observations")) {
     if (auto map = file.map(entry, "observation")) read_csv_observation(*map, mapping);
   }
-  if (mapping.joints.empty() && mapping.poses.empty()) {
+  if (mapping.joints.empty() && mapping.poses.empty() &&
+      (use == CsvUse::joints || mapping.conditions.empty())) {
     file.error(file.place(),
                "no joint is given; list them under joints, or measured poses of "
                "floating joints under poses");
   }
   if (use == CsvUse::joints) {
     mapping.observations.clear();
-  } else if (mapping.observations.empty()) {
+  } else if (mapping.observations.empty() && mapping.conditions.empty()) {
     file.error(file.place(), "no observation is given; list at least one under observations");
   }
   file.report_unknown();

@@ -11,7 +11,10 @@
 //   velocities:                     # of all joints or of none
 //     unit: deg/s                   # rad/s (default) or deg/s; m/s or mm/s for prismatic joints:
 //     columns: {joint_1: dq1, ...}  #   sliding_velocities: {unit: ..., columns: ...}
-//   conditions: {temperature: t_air}   # numbers that come with each sample, in units of your own
+//   conditions: {temperature: t_air}   # numbers that come with each sample, in units of your own; one in
+//                                   #   degrees or millimetres: track_yaw: {column: yaw, unit: degrees}
+//   increments: {left_wheel: dl}    # conditions, too, given as what they grew by since the row before; of x, y and yaw of
+//                                   #   a pose, such as track_x track_y track_yaw, as the motion seen from the pose before
 //   observations:
 //    - sensor: arm
 //      frame: reflector
@@ -84,8 +87,10 @@ struct CsvPose {
 
 /// A condition of every sample: a temperature, a load.
 struct CsvCondition {
-  std::string name;  ///< of the condition
-  CsvSum columns;    ///< whose sum it is
+  std::string name;        ///< of the condition
+  CsvSum columns;          ///< whose sum it is
+  CsvUnit unit = {};       ///< of the columns
+  bool increment = false;  ///< the columns are what it grew by since the row before
 };
 
 /// One observation of every sample.

@@ -27,6 +27,7 @@
 #include "kinecal/files/samples/feature_id_parameters.ipp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
+#include "kinecal/geometry/planar_motion.hpp"
 #include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/text/shell_command.hpp"
@@ -109,7 +110,8 @@ class CsvSamples {
     }
     if (complete) add_velocities(row, sample);
     for (std::size_t i = 0; i < conditions_.size(); ++i) {
-      sample.conditions[mapping_.conditions[i].name] = value(row, conditions_[i], {});
+      sample.conditions[mapping_.conditions[i].name] =
+          value(row, conditions_[i], mapping_.conditions[i].unit);
     }
     std::size_t next = 0, next_pose = 0;
     for (std::size_t i = 0; i < observations_.size(); ++i) {
@@ -367,6 +369,60 @@ class CsvSamples {
   std::set<std::string> doubted_;  ///< joints and sensors with a warning
 };
 
+/// Adds up conditions that a table gives as increments.
+class Increments {
+ public:
+  explicit Increments(const CsvMapping& mapping) {
+    for (const CsvCondition& condition : mapping.conditions) {
+      if (condition.increment) sums_[condition.name] = 0.0;
+    }
+    for (const auto& [name, sum] : sums_) {
+      if (!name.ends_with("_yaw")) continue;
+      const std::string body = name.substr(0, name.size() - 3);
+      if (sums_.contains(body + "x") && sums_.contains(body + "y")) bodies_.push_back(body);
+    }
+  }
+
+  /// Adds the sample of a row, and before the first of a run one where it began.  A row in which an increment is missing is left
+  /// out: nothing says how the rows around it belong together, and nothing compares them.
+  /// @returns  false if it was left out
+  bool add(Sample sample, std::vector<Sample>& samples) {
+    if (sums_.empty()) {
+      samples.push_back(std::move(sample));
+      return true;
+    }
+    const auto missing = [&](const auto& sum) {
+      return std::isnan(sample.conditions.at(sum.first));
+    };
+    if (std::any_of(sums_.begin(), sums_.end(), missing)) return false;
+    const auto run = sample.conditions.find(kRun);
+    const std::optional<double> of =
+        run == sample.conditions.end() ? std::nullopt : std::optional(run->second);
+    if (samples.empty() || of != run_) {
+      Sample& start = samples.emplace_back(sample);
+      for (const auto& [name, sum] : sums_) start.conditions[name] = sum;
+    }
+    run_ = of;
+    for (const std::string& body : bodies_) {
+      double &x = sums_[body + "x"], &y = sums_[body + "y"];
+      const PlanarMotion<double> moved =
+          PlanarMotion<double>::at(x, y, sums_[body + "yaw"]) *
+          PlanarMotion<double>::at(sample.conditions[body + "x"], sample.conditions[body + "y"],
+                                   0.0);
+      sample.conditions[body + "x"] = moved.x - x;
+      sample.conditions[body + "y"] = moved.y - y;
+    }
+    for (auto& [name, sum] : sums_) sample.conditions[name] = sum += sample.conditions[name];
+    samples.push_back(std::move(sample));
+    return true;
+  }
+
+ private:
+  std::map<std::string, double> sums_;  ///< by name
+  std::vector<std::string> bodies_;     ///< "track_", of which x, y and yaw are increments
+  std::optional<double> run_;           ///< of the last row
+};
+
 /// Warns of a header with only numbers, unless it counts the columns.
 void doubt_csv_header(const CsvRow& row, const std::string& file, Diagnostics& diagnostics) {
   bool counts = true;
@@ -407,13 +463,19 @@ struct CsvRead {
   const auto key = column.empty() ? std::nullopt : found.find(column.front());
   CsvSamples reader(mapping, std::move(found), table.units, file, diagnostics);
   if (diagnostics.errors.size() != before) return read;  // they would repeat in every row
+  Increments increments(mapping);
+  int missing = 0;
   for (const CsvRow& row : table.rows) {
     auto sample = reader.sample(row);
     if (!sample) continue;
-    read.samples.push_back(std::move(*sample));
-    if (key) read.cells.push_back(*key < row.cells.size() ? row.cells[*key] : "");
+    if (!increments.add(std::move(*sample), read.samples)) ++missing;
+    if (key) read.cells.resize(read.samples.size(), *key < row.cells.size() ? row.cells[*key] : "");
   }
   reader.finish();
+  if (missing > 0) {
+    diagnostics.note({file, 0}, fmt::format("{} row{} without all increments {} left out", missing,
+                                            missing == 1 ? "" : "s", missing == 1 ? "is" : "are"));
+  }
   if (read.samples.empty() && diagnostics.errors.size() == before) {
     diagnostics.error({file, 0}, mapping.poses.empty() ? "no row has a position of every joint"
                                                        : "no row has every joint and pose");

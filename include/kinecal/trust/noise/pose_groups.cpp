@@ -136,18 +136,31 @@ PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> sample
 }
 
 PoseGroups by_run(const PoseGroups& poses, std::span<const Sample> samples) {
-  constexpr int kFewest = 5;
-  std::map<double, int> numbers;
-  PoseGroups runs;
-  for (const Sample& sample : samples) {
+  constexpr std::size_t kFewest = 5, kStretches = 20;
+  const auto is_numbered = [](const Sample& sample) {
     const auto run = sample.conditions.find(kRun);
-    if (run == sample.conditions.end() || !std::isfinite(run->second)) return poses;
-    runs.of_sample.push_back(
-        numbers.try_emplace(run->second, static_cast<int>(numbers.size())).first->second);
-  }
-  runs.count = static_cast<int>(numbers.size());
+    return run != sample.conditions.end() && std::isfinite(run->second);
+  };
+  const auto is_compared = [](const Sample& sample) { return !sample.before.empty(); };
+  PoseGroups runs;
   runs.are_runs = true;
-  return runs.count < kFewest ? poses : runs;
+  if (std::all_of(samples.begin(), samples.end(), is_numbered)) {
+    std::map<double, int> numbers;
+    for (const Sample& sample : samples) {
+      const double run = sample.conditions.at(kRun);
+      runs.of_sample.push_back(
+          numbers.try_emplace(run, static_cast<int>(numbers.size())).first->second);
+    }
+    runs.count = static_cast<int>(numbers.size());
+  } else if (samples.size() > kFewest * kStretches &&
+             std::count_if(samples.begin(), samples.end(), is_compared) + 1 >=
+                 std::ssize(samples)) {
+    runs.count = static_cast<int>(kStretches);
+    for (std::size_t s = 0; s < samples.size(); ++s) {
+      runs.of_sample.push_back(static_cast<int>(s * kStretches / samples.size()));
+    }
+  }
+  return runs.count < static_cast<int>(kFewest) ? poses : runs;
 }
 
 int distinct_poses(const AnyProblem& problem, std::span<const Sample> samples) {
