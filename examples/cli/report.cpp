@@ -100,14 +100,14 @@ std::string page(const CalibrateOptions& options, const InputTexts& texts,
   data.date = day();
   data.inputs = input_files(options, texts);
   const Findings& findings = calibrated;
-  if (!findings.assessments.empty() && findings.assessments.back().pose) {
+  if (!findings.assessments.empty() && !findings.assessments.back().compared.empty()) {
     constexpr int kPoses = 400;
     std::vector<double> values;
     for (const Parameter& parameter : findings.result.table) values.push_back(parameter.value);
     const std::size_t step = findings.assessments.size() - 1;
     data.workspace = workspace_map(*calibrated.setup.calibration.steps[step].problem,
-                                   findings.assessments.back(), *findings.assessments.back().pose,
-                                   values, kPoses);
+                                   findings.assessments.back(),
+                                   findings.assessments.back().compared[0], values, kPoses);
   }
   RobotScene scene = scene_of(calibrated, options.mesh_paths, {});
   for (const KnownPoint& point : data.workspace) {

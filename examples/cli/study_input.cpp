@@ -58,14 +58,14 @@ ParameterTable take_recorded_surface(const StudyFiles& files, StudyInput& input)
   PreparedCalibration prepared = prepare(std::move(setup), options, std::move(found));
   print_or_throw(prepared.diagnostics);
   const CalibratedRobot calibrated = calibrate_robot(std::move(prepared), options);
-  if (!calibrated.is_usable() || !calibrated.assessments.back().pose) {
+  if (!calibrated.is_usable() || calibrated.assessments.back().compared.empty()) {
     throw InputError("the samples cannot be calibrated: " +
                      (calibrated.judgement.reasons.empty() ? "no pose is compared"
                                                            : calibrated.judgement.reasons.front()) +
                      "; a selection starts from their result");
   }
   input.config = *calibrated.setup.config;
-  input.calibrated = calibrated.assessments.back().pose->position;
+  input.calibrated = calibrated.assessments.back().compared[0].position;
   std::vector<std::string> blocks;
   for (const BlockConfig& block : input.config.steps.back().error_blocks) {
     if (block.surface) blocks.push_back(block.name);

@@ -31,7 +31,7 @@ struct CalibratedSession {
   }
   [[nodiscard]] double held_out() const {
     return pose_held_out(scene.solved(), step, NoisyScene::span(values), scene.samples,
-                         {step.pose->frame}, {step.pose->in})
+                         {step.compared[0].frame}, {step.compared[0].in})
         .position;
   }
 };
@@ -48,7 +48,7 @@ TEST(SessionEnd, IsThereWhenThePoseIsKnownEverywhere) {
   NoisyScene scene(40);
   const CalibratedSession session{scene};
   EXPECT_EQ(session.why(0.02, NoisyScene(10, 5).samples), "");
-  EXPECT_THAT(session.why(0.9 * session.step.pose->position),
+  EXPECT_THAT(session.why(0.9 * session.step.compared[0].position),
               AllOf(HasSubstr("'hand' in 'camera_optical_frame' is known to"),
                     HasSubstr("at the captured poses")));
 }
@@ -57,7 +57,7 @@ TEST(SessionEnd, AsksHowEachPoseIsKnownByTheOthers) {
   NoisyScene scene(8);
   CalibratedSession session{scene};
   session.step.held_out.clear();
-  const double between = 0.5 * (session.step.pose->position + session.held_out());
+  const double between = 0.5 * (session.step.compared[0].position + session.held_out());
   EXPECT_THAT(session.why(between), HasSubstr("at each pose by the samples of the others"));
 }
 

@@ -138,7 +138,7 @@ TEST_F(SessionOfASurface, IsJudgedAsItsCalibration) {
   const CalibratedRobot all = session.calibrate_all();
   ASSERT_TRUE(all.is_usable());
   EXPECT_LT(distance_of(camera_in(all.result.table), true_camera()), 1e-3);
-  const PoseUncertainty& pose = all.assessments.back().pose.value();
+  const PoseUncertainty& pose = all.assessments.back().compared.at(0);
   EXPECT_NEAR(state.online.position, pose.position, 1e-3 * pose.position);
   EXPECT_NEAR(state.online.rotation, pose.rotation, 1e-3 * pose.rotation);
   const Accuracy loose{.frame = "", .position = 3.0 * pose.position, .rotation = {}},

@@ -44,7 +44,7 @@ ReportData hostile(const std::string& name) {
   data.unobservable = {{{name, 1.0}, {name + "2", -0.5}}};
   data.hold = {name};
   data.rank = 1;
-  data.pose = PoseUncertainty{.frame = name, .in = name, .position = 1e-3, .rotation = 1e-3};
+  data.compared = {{.frame = name, .in = name, .position = 1e-3, .rotation = 1e-3}};
   data.workspace = {{{0.1, 0.2, 0.3}, 0.001}, {{0.2, 0.2, 0.3}, 0.002}};
   return data;
 }

@@ -57,8 +57,8 @@ Findings findings() {
                     .times = 43.0,
                     .limit = 6.0,
                     .bad = true}};
-  step.pose =
-      PoseUncertainty{.frame = "hand", .in = "camera", .link = "gripper", .position = 0.0005};
+  step.compared = {
+      PoseUncertainty{.frame = "hand", .in = "camera", .link = "gripper", .position = 0.0005}};
   all.sources = {"samples.yaml:1", "samples.yaml:40"};
   all.numbers = {1, 3};
   all.left_out = {{2, "samples.yaml:20", "--exclude"}};

@@ -42,8 +42,8 @@ TEST(AssessShards, SaysWhatAllSamplesAtOnceSay) {
   EXPECT_EQ(of.observability.rank, all.observability.rank);
   EXPECT_NEAR(of.observability.condition, all.observability.condition,
               1e-6 * all.observability.condition);
-  ASSERT_TRUE(of.pose && all.pose);
-  EXPECT_NEAR(of.pose->position, all.pose->position, 0.1 * all.pose->position);
+  ASSERT_FALSE(of.compared.empty() || all.compared.empty());
+  EXPECT_NEAR(of.compared[0].position, all.compared[0].position, 0.1 * all.compared[0].position);
 }
 
 TEST(AssessShards, HasTheStatisticsOfAllResiduals) {

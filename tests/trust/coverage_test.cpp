@@ -178,7 +178,7 @@ class Coverage {
       }
     }
     shares_.push_back(static_cast<double>(hits) / intervals);
-    ASSERT_TRUE(found.pose.has_value());
+    ASSERT_TRUE(!found.compared.empty());
     double squares = 0.0;
     for (const Sample& sample : simulated_.exact) {
       squares += (simulated_.gripper_in_camera(table, sample, values) -
@@ -186,7 +186,7 @@ class Coverage {
                      .squaredNorm();
     }
     squares_.push_back(squares / static_cast<double>(simulated_.exact.size()));
-    variances_.push_back(found.pose->position * found.pose->position);
+    variances_.push_back(found.compared[0].position * found.compared[0].position);
   }
 
   const Simulated& simulated_;

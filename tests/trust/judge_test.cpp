@@ -200,9 +200,9 @@ TEST(Judge, ComparesTheNoiseWithWhatRobotsReachWhereNoSigmaWasGiven) {
 /// What a prior shifts is in the +-, and no sample takes it out.
 TEST(Judge, AsksForSamplesOrForAnotherPrior) {
   Judged judged;
-  ASSERT_TRUE(judged.assessments[0].pose.has_value());
-  judged.assessments[0].pose->position = 0.008;
-  judged.assessments[0].pose->elsewhere = 0.0;
+  ASSERT_TRUE(!judged.assessments[0].compared.empty());
+  judged.assessments[0].compared[0].position = 0.008;
+  judged.assessments[0].compared[0].elsewhere = 0.0;
   expect(judged.judgement(), Grade::use_with_care, "is known to 8 mm only; record more samples");
   EXPECT_EQ(judged.judgement().remedies.front().kind, Remedy::Kind::record);
   judged.assessments[0].pulls = {
@@ -362,16 +362,17 @@ TEST(Judge, WantsThePoseThatMattersToBeKnown) {
                                         {0.0051, Grade::use_with_care},
                                         {0.021, Grade::do_not_use}}) {
     Judged judged;
-    judged.assessments[0].pose->position = metres;
+    judged.assessments[0].compared[0].position = metres;
     expect(judged.judgement(), verdict, "the position of 'hand' in 'camera_optical_frame'");
   }
   Judged further;
-  further.assessments[0].further = {*further.assessments[0].pose};
-  further.assessments[0].further[0].in = "second_camera";
-  further.assessments[0].further[0].position = 0.008;
+  PoseUncertainty second = further.assessments[0].compared[0];
+  second.in = "second_camera";
+  second.position = 0.008;
+  further.assessments[0].compared.push_back(second);
   expect(further.judgement(), Grade::use_with_care, "the position of 'hand' in 'second_camera'");
   Judged judged;
-  judged.assessments[0].pose->determined = false;
+  judged.assessments[0].compared[0].determined = false;
   expect(judged.judgement(), Grade::use_with_care, "do not determine");
 }
 

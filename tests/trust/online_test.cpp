@@ -41,7 +41,7 @@ TEST(Online, KnowsThePoseAsWellAsTheWholeCalibration) {
   OnlineCalibration online = follow(scene);
   OnlineState state;
   for (const Sample& sample : scene.samples) state = online.add(sample);
-  const PoseUncertainty whole = scene.solve_and_assess().pose.value();
+  const PoseUncertainty whole = scene.solve_and_assess().compared.at(0);
   EXPECT_EQ(whole.frame, kHand.link);
   EXPECT_EQ(whole.in, kCamera.link);
   // Over some of the poses, and with the noise of all blocks.

@@ -196,9 +196,9 @@ std::string why_go_on(const Accuracy& wanted, const SessionResult& result,
   const Assessment& step = result.step;
   if (std::string few = detail::too_few(result); !few.empty()) return few;
   if (std::string why = detail::not_usable(result.judgement); !why.empty()) return why;
-  if (!step.pose) return "no error block compares two frames";
-  std::string why = detail::pose_not_known(wanted, result, *step.pose, ahead);
-  for (const PoseUncertainty& pose : step.further) {
+  if (step.compared.empty()) return "no error block compares two frames";
+  std::string why;
+  for (const PoseUncertainty& pose : step.compared) {
     if (why.empty()) why = detail::pose_not_known(wanted, result, pose, ahead);
   }
   return why.empty() ? detail::still_open(result, ahead) : why;

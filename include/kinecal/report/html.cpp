@@ -414,15 +414,14 @@ namespace {
     html += fmt::format("<p>by the URDF alone: <strong>{}</strong></p>",
                         html_sentence(errors_text(read_back.of(read_back.judged)->errors)));
   }
-  if (data.pose) {
+  for (const PoseUncertainty& pose : data.compared) {
     constexpr double kKnown = 0.35;  // radians; the orientation of a point is meaningless
-    html += fmt::format(
-        "<p>{}<code>{}</code> in <code>{}</code> is known to {}{}</p>",
-        read_back.is_worse ? "With <code>calibration.yaml</code>, " : "",
-        html_name(data.pose->frame), html_name(data.pose->in),
-        read_back.is_worse ? reading(data.pose->position, "m")
-                           : "<strong>" + reading(data.pose->position, "m") + "</strong>",
-        data.pose->rotation < kKnown ? ", " + reading(data.pose->rotation, "rad") : "");
+    html += fmt::format("<p>{}<code>{}</code> in <code>{}</code> is known to {}{}</p>",
+                        read_back.is_worse ? "With <code>calibration.yaml</code>, " : "",
+                        html_name(pose.frame), html_name(pose.in),
+                        read_back.is_worse ? reading(pose.position, "m")
+                                           : "<strong>" + reading(pose.position, "m") + "</strong>",
+                        pose.rotation < kKnown ? ", " + reading(pose.rotation, "rad") : "");
   }
   for (const PoseUncertainty& pose : data.between) {
     html += pose.determined

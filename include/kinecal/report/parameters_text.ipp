@@ -107,24 +107,20 @@ namespace kinecal::detail {
   for (const StepResult& step : findings.result.steps) {
     if (step.starts.searched()) text += "  " + to_string(step.starts) + "\n";
   }
-  for (const Assessment& step : findings.assessments) {
-    if (!step.pose || &step != &findings.assessments.back()) continue;
-    std::vector<PoseUncertainty> poses = step.further;
-    poses.insert(poses.begin(), *step.pose);
-    text += "\n";
-    for (const PoseUncertainty& pose : poses) {
-      text += fmt::format("Pose of '{}' in '{}': +- {}, {}; at the worst of these samples {}, {}\n",
-                          pose.frame, pose.in, reading(pose.position, "m"),
-                          reading(pose.rotation, "rad"), reading(pose.worst_position, "m"),
-                          reading(pose.worst_rotation, "rad"));
-      if (pose.elsewhere > 0.0) {
-        text += fmt::format("  over the limits of the joints: {} (median)\n",
-                            reading(pose.elsewhere, "m"));
-      }
+  if (findings.assessments.empty()) return text;
+  const Assessment& step = findings.assessments.back();
+  if (!step.compared.empty()) text += "\n";
+  for (const PoseUncertainty& pose : step.compared) {
+    text +=
+        fmt::format("Pose of '{}' in '{}': +- {}, {}; at the worst of these samples {}, {}\n",
+                    pose.frame, pose.in, reading(pose.position, "m"), reading(pose.rotation, "rad"),
+                    reading(pose.worst_position, "m"), reading(pose.worst_rotation, "rad"));
+    if (pose.elsewhere > 0.0) {
+      text += fmt::format("  over the limits of the joints: {} (median)\n",
+                          reading(pose.elsewhere, "m"));
     }
   }
-  if (findings.assessments.empty()) return text;
-  for (const PoseUncertainty& pose : findings.assessments.back().between) {
+  for (const PoseUncertainty& pose : step.between) {
     text += pose.determined
                 ? fmt::format("Pose of '{}' in '{}': +- {}, {}\n", pose.frame, pose.in,
                               reading(pose.position, "m"), reading(pose.rotation, "rad"))

@@ -299,7 +299,7 @@ ReportData report_data(const Calibration& calibration, const Findings& findings,
     for (const auto& [parameter, factor] : combination) of.emplace_back(name(parameter), factor);
   }
   for (const int parameter : last.observability.hold) data.hold.push_back(name(parameter));
-  data.pose = last.pose;
+  data.compared = last.compared;
   data.between = last.between;
   data.cameras = last.maps;
   return data;

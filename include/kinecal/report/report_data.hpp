@@ -113,13 +113,13 @@ struct ReportData {
   std::vector<std::vector<double>> correlation;  ///< (correlated x correlated), -1 to 1
   /// Combinations that affect no residual: parameter names and factors.
   std::vector<std::vector<std::pair<std::string, double>>> unobservable;
-  std::vector<std::string> hold;         ///< parameters to hold so that all others are observable
-  int rank = 0;                          ///< number of combinations that are observable
-  std::optional<PoseUncertainty> pose;   ///< of the frames that the first error block compares
-  std::vector<PoseUncertainty> between;  ///< of --between
-  std::vector<KnownPoint> workspace;     ///< of the origin of that pose, over the robot's workspace
-  std::vector<ProjectionMap> cameras;    ///< how well they are known, of which something is free
-  std::string summary;                   ///< the report as text
+  std::vector<std::string> hold;          ///< parameters to hold so that all others are observable
+  int rank = 0;                           ///< number of combinations that are observable
+  std::vector<PoseUncertainty> compared;  ///< of the frames that error blocks compare
+  std::vector<PoseUncertainty> between;   ///< of --between
+  std::vector<KnownPoint> workspace;   ///< of the origin of that pose, over the robot's workspace
+  std::vector<ProjectionMap> cameras;  ///< how well they are known, of which something is free
+  std::string summary;                 ///< the report as text
 };
 
 /// Collects the content of a calibration's report, except its inputs, date and command.

@@ -222,11 +222,7 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
     PoseUncertainty pose = pose_uncertainty(problem, inside, values, fit, found.uncertainty,
                                             samples, frames.frame, frames.in);
     pose.elsewhere = detail::deviation_elsewhere(problem, found, pose, values);
-    if (found.pose) {
-      found.further.push_back(std::move(pose));
-    } else {
-      found.pose = std::move(pose);
-    }
+    found.compared.push_back(std::move(pose));
   }
   for (std::size_t b = 1; b < options.between.size(); ++b) {
     const FrameOnRobot frame = frame_named(problem, samples, options.between[b]);

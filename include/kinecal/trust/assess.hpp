@@ -51,17 +51,17 @@ struct Assessment {
   std::vector<AlikePixels> alike;             ///< of the same cameras
   std::vector<IdleGroup> idle;                ///< whose parameters improve nothing
   std::vector<PriorPull> pulls;               ///< priors that the samples contradict
-  std::optional<PoseUncertainty> pose;        ///< of the frames that the first error block compares
-  std::vector<PoseUncertainty> further;       ///< the same of each further camera
-  std::vector<PoseUncertainty> between;       ///< of each pair of AssessOptions::between
-  std::int64_t rows = 0;                      ///< residuals, without priors
-  double used = 0.0;                          ///< of these, by poses that samples have of their own
-  std::int64_t samples = 0;                   ///< their number
-  double readings = 1.0;                      ///< samples per pose: see pose_groups()
-  std::int64_t views = 0;                     ///< different poses: see distinct_poses()
-  bool one_pose = false;                      ///< all samples are of one pose of the robot
-  Neighbours neighbours;                      ///< whether consecutive poses err alike
-  double size = 0.0;  ///< of the robot: longest chain, sum of its links, metres
+  /// Of each pair of frames that error blocks compare: a camera's come once, the first block's first.
+  std::vector<PoseUncertainty> compared;
+  std::vector<PoseUncertainty> between;  ///< of each pair of AssessOptions::between
+  std::int64_t rows = 0;                 ///< residuals, without priors
+  double used = 0.0;                     ///< of these, by poses that samples have of their own
+  std::int64_t samples = 0;              ///< their number
+  double readings = 1.0;                 ///< samples per pose: see pose_groups()
+  std::int64_t views = 0;                ///< different poses: see distinct_poses()
+  bool one_pose = false;                 ///< all samples are of one pose of the robot
+  Neighbours neighbours;                 ///< whether consecutive poses err alike
+  double size = 0.0;                     ///< of the robot: longest chain, sum of its links, metres
 
   /// Standard deviation of a parameter of the table; nullopt if the step does not free it.
   [[nodiscard]] std::optional<double> deviation(int parameter) const;

@@ -366,13 +366,8 @@ ShardAssessment assess_shards(const Shards& shards, const FreeSet& free, Paramet
   if (compared.empty()) return found;
   const LinearFit fit = linear_fit(*drawn.evaluator(inside, 1), after, by);
   for (const ComparedFrames& frames : compared) {
-    PoseUncertainty pose = pose_uncertainty(drawn, inside, after, fit, of.uncertainty, samples,
-                                            frames.frame, frames.in);
-    if (of.pose) {
-      of.further.push_back(std::move(pose));
-    } else {
-      of.pose = std::move(pose);
-    }
+    of.compared.push_back(pose_uncertainty(drawn, inside, after, fit, of.uncertainty, samples,
+                                           frames.frame, frames.in));
   }
   return found;
 }

@@ -314,11 +314,9 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
     if (last) detail::judge_places(*step.problem, assessments[s], result.table, judgement);
     if (last) detail::judge_weak(assessments[s], result.table, judgement);
     if (last) detail::judge_priors(assessments[s], result.table, judgement);
-    if (last && assessments[s].pose) {
-      detail::judge_pose(assessments[s], *assessments[s].pose, judgement);
-      for (const PoseUncertainty& pose : assessments[s].further) {
-        detail::judge_pose(assessments[s], pose, judgement);
-      }
+    if (!last) continue;
+    for (const PoseUncertainty& pose : assessments[s].compared) {
+      detail::judge_pose(assessments[s], pose, judgement);
     }
   }
   const bool refutes =

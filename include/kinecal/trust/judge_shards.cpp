@@ -87,8 +87,7 @@ void add_drawn(const Assessment& drawn, Assessment& all) {
   whole.uncertainty = std::move(all.uncertainty);
   whole.weak = std::move(all.weak);
   whole.folded = std::move(all.folded);
-  whole.pose = std::move(all.pose);
-  whole.further = std::move(all.further);
+  whole.compared = std::move(all.compared);
   whole.rows = all.rows;
   whole.used = all.used;
   whole.samples = all.samples;

@@ -26,13 +26,13 @@ PoseUncertainty pose_by_others(const NoisyScene& scene, const Assessment& step) 
 TEST(PoseAt, IsThatOfTheAssessmentAtItsOwnSamples) {
   NoisyScene scene(20);
   const Assessment step = scene.solve_and_assess();
-  EXPECT_DOUBLE_EQ(pose_there(scene, step, scene.samples).position, step.pose->position);
+  EXPECT_DOUBLE_EQ(pose_there(scene, step, scene.samples).position, step.compared[0].position);
 }
 
 TEST(PoseAt, PosesUnlikeTheSamplesAreKnownWorse) {
   AlikeSamples alike(12);
   const Assessment step = alike.scene.solve_and_assess();
-  EXPECT_GT(pose_there(alike.scene, step, alike.others).position, 1.2 * step.pose->position);
+  EXPECT_GT(pose_there(alike.scene, step, alike.others).position, 1.2 * step.compared[0].position);
 }
 
 TEST(PoseHeldOut, IsWhatCalibrationsWithoutEachSampleSay) {
@@ -48,7 +48,7 @@ TEST(PoseHeldOut, IsWhatCalibrationsWithoutEachSampleSay) {
   const double expected = std::sqrt(squares / 12.0);
   constexpr double kOfNoise = 0.15;  // each calibration estimates the noise anew, of 36 rows less
   EXPECT_NEAR(pose_by_others(scene, step).position, expected, kOfNoise * expected);
-  EXPECT_GT(pose_by_others(scene, step).position, step.pose->position);
+  EXPECT_GT(pose_by_others(scene, step).position, step.compared[0].position);
 }
 
 TEST(PoseHeldOut, ADirectionThatTheOthersDoNotDetermineIsNotDetermined) {
@@ -57,7 +57,7 @@ TEST(PoseHeldOut, ADirectionThatTheOthersDoNotDetermineIsNotDetermined) {
     for (Observation& seen : sample.observations) seen.features.resize(1);
   }
   const Assessment step = scene.solve_and_assess();
-  EXPECT_TRUE(step.pose->determined);
+  EXPECT_TRUE(step.compared[0].determined);
   EXPECT_FALSE(pose_by_others(scene, step).determined);
 }
 

@@ -23,13 +23,14 @@ TEST(WorkspaceMap, IsTheUncertaintyOfThePoseAtOneSample) {
   const Eigen::VectorXd values = scene.values();
   const auto problem = make_problem(held_robot(scene.samples[3]), "base_link",
                                     test::table_with_units(), test::kSceneFrames);
-  const auto map = workspace_map(*problem, found, *found.pose, test::NoisyScene::span(values), 3);
+  const auto map =
+      workspace_map(*problem, found, found.compared[0], test::NoisyScene::span(values), 3);
   const auto evaluator = scene.solved().evaluator(scene.free());
   const LinearFit fit = scene.linear(*evaluator);
-  const PoseUncertainty there =
-      pose_uncertainty(scene.solved(), scene.free(), test::NoisyScene::span(values), fit,
-                       found.uncertainty, std::span(&scene.samples[3], 1),
-                       {found.pose->link, found.pose->frame}, {found.pose->in_link});
+  const PoseUncertainty there = pose_uncertainty(
+      scene.solved(), scene.free(), test::NoisyScene::span(values), fit, found.uncertainty,
+      std::span(&scene.samples[3], 1), {found.compared[0].link, found.compared[0].frame},
+      {found.compared[0].in_link});
   ASSERT_EQ(map.size(), 3u);
   for (const KnownPoint& point : map) {
     EXPECT_NEAR(point.deviation, there.position, 1e-9 * there.position);
@@ -41,7 +42,7 @@ TEST(WorkspaceMap, ReachesBeyondTheSamples) {
   const Assessment found = scene.solve_and_assess();
   const Eigen::VectorXd values = scene.values();
   const auto map =
-      workspace_map(scene.solved(), found, *found.pose, test::NoisyScene::span(values), 300);
+      workspace_map(scene.solved(), found, found.compared[0], test::NoisyScene::span(values), 300);
   ASSERT_EQ(map.size(), 300u);
   double least = 1.0, most = 0.0;
   for (const KnownPoint& point : map) {
@@ -49,18 +50,18 @@ TEST(WorkspaceMap, ReachesBeyondTheSamples) {
     most = std::max(most, point.deviation);
   }
   EXPECT_GT(least, 0.0);
-  EXPECT_LT(least, found.pose->position);
-  EXPECT_GT(most, found.pose->worst_position);
+  EXPECT_LT(least, found.compared[0].position);
+  EXPECT_GT(most, found.compared[0].worst_position);
   EXPECT_LT(most, 0.1);
 }
 
 TEST(WorkspaceMap, FollowsTheCameraIfTheOtherFrameStands) {
   test::NoisyScene scene(20);
   Assessment found = scene.solve_and_assess();
-  found.pose->frame = found.pose->link = "base_link";  // in the camera's frame
+  found.compared[0].frame = found.compared[0].link = "base_link";  // in the camera's frame
   const Eigen::VectorXd values = scene.values();
   const auto map =
-      workspace_map(scene.solved(), found, *found.pose, test::NoisyScene::span(values), 50);
+      workspace_map(scene.solved(), found, found.compared[0], test::NoisyScene::span(values), 50);
   ASSERT_EQ(map.size(), 50u);
   double farthest = 0.0;
   for (const KnownPoint& point : map) {
@@ -77,8 +78,9 @@ TEST(WorkspaceMap, IsEmptyWhereNothingIsFree) {
   Assessment found = scene.solve_and_assess();
   found.parameters.clear();
   const Eigen::VectorXd values = scene.values();
-  EXPECT_TRUE(workspace_map(scene.solved(), found, *found.pose, test::NoisyScene::span(values), 10)
-                  .empty());
+  EXPECT_TRUE(
+      workspace_map(scene.solved(), found, found.compared[0], test::NoisyScene::span(values), 10)
+          .empty());
 }
 
 }  // namespace
