@@ -239,9 +239,9 @@ inline void add_robot(Scene& scene, const std::shared_ptr<const RobotSurface>& s
 inline void furnish(SimulationPlan& plan) {
   SimulatedTarget& target = plan.target;
   Scene& scene = plan.setup.scene;
-  constexpr double kInfinite = std::numeric_limits<double>::infinity(), kWall = 4.0;  // metres
+  constexpr double kInfinite = std::numeric_limits<double>::infinity(), kWallAhead = 4.0;  // metres
   add_ground(scene, plan.goal.ground + kBelowFloor);
-  scene.patches.push_back({.pose = facing({kWall, 0.0, 0.0}, {-1.0, 0.0, 0.0}),
+  scene.patches.push_back({.pose = facing({kWallAhead, 0.0, 0.0}, {-1.0, 0.0, 0.0}),
                            .width = kInfinite,
                            .height = kInfinite,
                            .albedo = 0.6});
