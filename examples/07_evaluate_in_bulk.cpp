@@ -10,7 +10,6 @@
 
 #include "kinecal/core.hpp"
 #include "kinecal/errors.hpp"
-#include "kinecal/evaluation/basic_problem.ipp"  // in double, too
 #include "robots/mobile_manipulator.hpp"
 #include "simulation.hpp"
 
@@ -39,9 +38,8 @@ Sample measure(SeededRandom& random) {
   return sample;
 }
 
-template <class S>
-BasicProblem<S> problem_of(std::span<const Sample> samples) {
-  BasicProblem<S> problem = Tracked().problem<S>(Tracked().table(samples));
+Problem problem_of(std::span<const Sample> samples) {
+  Problem problem = Tracked().problem(Tracked().table(samples));
   for (const Sample& sample : samples) problem.add_sample(sample);
   return problem;
 }
@@ -69,13 +67,11 @@ int main() {
   SeededRandom random(7);
   std::vector<Sample> samples;
   for (int n = 0; n < kSamples; ++n) samples.push_back(measure(random));
-  const Problem problem = problem_of<Packet>(samples);
-  const auto one_by_one = problem_of<double>(samples);
+  const Problem problem = problem_of(samples);
   const FreeSet free = Tracked::free(problem.table());
   const std::vector<double> values(static_cast<std::size_t>(problem.table().size()), 0.0);
   Evaluator<Packet> packets(problem, free, 1), threads(problem, free);
-  Evaluator<double> doubles(one_by_one, free, 1);
-  NormalEquations by_rows(free.size()), all(free.size()), shared(free.size()), slow(free.size());
+  NormalEquations by_rows(free.size()), all(free.size()), shared(free.size());
   std::printf("%d samples, %d in a packet, %d parameters\n", kSamples, kLanes<Packet>, free.size());
   time_of("residuals and Jacobian, row by row", [&] {
     by_rows = NormalEquations(free.size());
@@ -84,18 +80,16 @@ int main() {
       by_rows.hessian.noalias() += rows.jacobian.transpose() * rows.jacobian;
     });
   });
-  time_of("normal equations, one sample at a time",
-          [&] { slow = doubles.normal_equations(values); });
-  time_of("the same, in packets", [&] { all = packets.normal_equations(values); });
+  time_of("normal equations", [&] { all = packets.normal_equations(values); });
   time_of("the same, on all cores", [&] { shared = threads.normal_equations(values); });
 
   const std::span<const Sample> both(samples);
   NormalEquations halves(free.size());
   for (const auto half : {both.first(kSamples / 2), both.last(kSamples / 2)}) {
-    halves += normal_equations(problem_of<Packet>(half), values, &free);
+    halves += normal_equations(problem_of(half), values, &free);
   }
-  const bool agree = same(all, by_rows) && same(all, slow) && same(all, halves) &&
-                     shared.hessian == all.hessian;  // bit for bit
+  const bool agree =
+      same(all, by_rows) && same(all, halves) && shared.hessian == all.hessian;  // bit for bit
   std::printf("All of them, and the sums of two halves, %s.\n", agree ? "agree" : "DO NOT AGREE");
   return agree ? 0 : 1;
 }

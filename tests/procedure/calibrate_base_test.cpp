@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kinecal/config/read_config.hpp"
@@ -71,12 +72,14 @@ TEST(CalibrateBase, ByATrackedPoseWithTheMountOfTheLaser) {
   base.mount = {0.25, 0.01, 0.02};
   std::vector<BaseRun> runs = turns_and_straight_runs();
   for (const double turn : {0.6, -0.6, 0.3, -0.3}) runs.push_back({0.4, turn, 6.0});
-  const CalibratedRobot calibrated = calibrate_robot(setup_of(
+  PreparedCalibration prepared = prepare(setup_of(
       "base_track_width_scale, base_left_rollout_scale, base_right_rollout_scale, base_x, base_y, "
       "base_yaw",
       "- {name: base, type: differential_to_pose, wheel_radius: 0.0605, track_width: 0.37476, x: "
       "0.2, translation_scale: 500, rotation_scale: 500}\n",
       simulate_base(base, runs, 6).samples));
+  EXPECT_THAT(prepared.diagnostics.warnings, IsEmpty());
+  const CalibratedRobot calibrated = calibrate_robot(std::move(prepared));
   ASSERT_TRUE(calibrated.result.converged);
   expect_found(calibrated, "base_track_width_scale", 1.02);
   expect_found(calibrated, "base_left_rollout_scale", 0.99);

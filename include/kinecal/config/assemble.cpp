@@ -529,8 +529,10 @@ bool check_terms(const StepConfig& step, const AnyProblem& problem, std::span<co
     const int count = problem.samples_of(t);
     total += count;
     if (missing.are_in(*block)) continue;  // report_missing() says so
-    warn_of_disjoint_ids(term, *block, samples, diagnostics);
-    warn_of_one_sided_ids(term, *block, samples, diagnostics);
+    if (!term.sensors.empty()) {
+      warn_of_disjoint_ids(term, *block, samples, diagnostics);
+      warn_of_one_sided_ids(term, *block, samples, diagnostics);
+    }
     if (count == 0 && term.sensors.empty()) {
       diagnostics.warning(
           block->place, fmt::format("error block '{}': no sample has its conditions: {}", term.name,
