@@ -127,6 +127,9 @@ int init_hand_eye_samples(const InitOptions& options);
 /// Writes the configuration and capture.yaml of a calibration of cameras alone.
 int init_cameras(const InitOptions& options);
 
+/// Writes the configuration of a magnetometer from its readings; without --urdf, a URDF of it alone, too.
+int init_magnetometer(const InitOptions& options);
+
 /// Writes a first configuration from a URDF and a few answers.
 int init(const InitOptions& options);
 

@@ -408,7 +408,8 @@ void add_init(CLI::App& command, InitOptions& options) {
           "also goes with another: leds,ground; robot (its own surface); or what the tip touches, "
           "with "
           "nothing but joints recorded: point, tool, sockets, plane, line, sphere, bar, distance; "
-          "grip (one thing in both hands); gravity (an accelerometer)")
+          "grip (one thing in both hands); gravity (an accelerometer); or magnetometer, from "
+          "recorded readings (--from)")
       ->delimiter(',')
       ->type_name(one_of("TARGET", target_words()));
   command

@@ -41,6 +41,7 @@
 #include "kinecal/config/frame_gaps.hpp"
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/config/loss_names.hpp"
+#include "kinecal/config/magnetometer_start.hpp"
 #include "kinecal/config/missing_sensors.hpp"
 #include "kinecal/config/own_frames.hpp"
 #include "kinecal/config/parameters_from_config.hpp"

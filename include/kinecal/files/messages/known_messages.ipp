@@ -113,6 +113,15 @@ inline constexpr std::array kKnownMessages = {
                  "geometry_msgs/Vector3 linear_acceleration\n"
                  "float64[9] linear_acceleration_covariance\n",
                  "6a62c6daae103f4ff57a132d6f95cec2"},
+    KnownMessage{"sensor_msgs/MagneticField",
+                 "std_msgs/Header header\n"
+                 "geometry_msgs/Vector3 magnetic_field\n"
+                 "float64[9] magnetic_field_covariance\n",
+                 "2f3b0b43eed0c9501de0fa3ff89a45aa"},
+    KnownMessage{"geometry_msgs/Vector3Stamped",
+                 "std_msgs/Header header\n"
+                 "Vector3 vector\n",
+                 "7b324c7325e683bf02a9b14b01090ec7"},
     KnownMessage{"sensor_msgs/LaserScan",
                  "std_msgs/Header header\n"
                  "float32 angle_min\n"

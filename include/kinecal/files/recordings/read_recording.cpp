@@ -10,6 +10,7 @@
 #include "kinecal/files/poses/hand_eye_samples.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/base_messages.hpp"
+#include "kinecal/files/recordings/magnetometer_messages.hpp"
 #include "kinecal/files/recordings/message_decoder.ipp"
 #include "kinecal/files/recordings/message_samples.ipp"
 #include "kinecal/samples/joint_moves.hpp"
@@ -41,6 +42,41 @@ void check_names(const std::vector<Sample>& samples, Diagnostics& diagnostics) {
       }
     }
   }
+}
+
+/// What the topics of a bag show, beside robot_calibration's messages.
+struct SensedTopics {
+  bool drive = false, field = false;
+
+  void look_at(const BagTopic& topic) {
+    drive = drive || shows_base(topic);
+    field = field || shows_magnetic_field(topic);
+  }
+};
+
+/// The samples of a drive and of a magnetometer.
+/// @returns  false if the bag has neither
+[[nodiscard]] bool read_sensed(const std::string& path, const SensedTopics& topics,
+                               std::vector<Sample>& samples, Diagnostics& diagnostics) {
+  std::vector<Sample> of_field;
+  if (topics.field) of_field = read_magnetometer(path, diagnostics);
+  if (topics.drive) {
+    Diagnostics of_drive;
+    samples = read_base_drive(path, of_drive);
+    for (const auto list : {&Diagnostics::errors, &Diagnostics::warnings, &Diagnostics::doubts,
+                            &Diagnostics::refutable, &Diagnostics::notes}) {
+      if (!of_field.empty() && !of_drive.errors.empty()) break;
+      (diagnostics.*list)
+          .insert((diagnostics.*list).end(), (of_drive.*list).begin(), (of_drive.*list).end());
+    }
+  }
+  double run = 0.0;  // each reading is a run of its own
+  for (const Sample& sample : samples) run = std::max(run, sample.conditions.at(kRun));
+  for (Sample& sample : of_field) {
+    if (!samples.empty()) sample.conditions[kRun] = ++run;
+  }
+  samples.insert(samples.end(), of_field.begin(), of_field.end());
+  return topics.drive || !of_field.empty();
 }
 
 }  // namespace
@@ -81,17 +117,17 @@ Recording read_as_recorded(const std::string& path, Diagnostics& diagnostics, un
       if (const auto sample = decoder.decode(message, number)) samples.add(*sample, number);
     }
   };
-  bool is_drive = false;
+  detail::SensedTopics sensed;
   const auto wants = [&](const BagTopic& topic) {
     const TopicUse use = use_of(topic);
-    is_drive = is_drive || shows_base(topic);
+    sensed.look_at(topic);
     return use == TopicUse::samples || use == TopicUse::urdf;
   };
   read_bag(path, {wants, handle, meter}, diagnostics);
   recording.samples = samples.take(diagnostics);
-  if (number == 0 && is_drive && diagnostics.errors.size() == errors_before) {
-    recording.samples = read_base_drive(path, diagnostics);
-  } else if (number == 0 && diagnostics.errors.size() == errors_before) {
+  if (number == 0 && diagnostics.errors.size() == errors_before &&
+      !detail::read_sensed(path, sensed, recording.samples, diagnostics) &&
+      diagnostics.errors.size() == errors_before) {
     diagnostics.error({path, 0},
                       "no messages of robot_calibration_msgs/CalibrationData in this bag; "
                       "'kinecal inspect' shows what is in it");
