@@ -40,15 +40,16 @@ struct FieldReading {
   const auto usual = std::find(names.begin(), names.end(), kUpstreamsTopic);
   if (usual != names.end()) std::iter_swap(names.begin(), usual);
   for (std::size_t i = 1; i < names.size(); ++i) {
-    diagnostics.note({path, 0}, fmt::format("of the topics of magnetometers, '{}' is used, not '{}'",
-                                            names.front(), names[i]));
+    diagnostics.note({path, 0},
+                     fmt::format("of the topics of magnetometers, '{}' is used, not '{}'",
+                                 names.front(), names[i]));
   }
   return names.front();
 }
 
 /// Means of readings in succession that are nearer to the first of them than a twentieth of how far all scatter.
 [[nodiscard]] std::vector<FieldReading> thinned(const std::vector<FieldReading>& all) {
-  constexpr double kNear = 0.05;          // of the scatter
+  constexpr double kNear = 0.05;        // of the scatter
   constexpr std::size_t kEnough = 600;  // samples
   Vector3<double> mean = Vector3<double>::Zero();
   for (const FieldReading& one : all) mean += one.field / static_cast<double>(all.size());

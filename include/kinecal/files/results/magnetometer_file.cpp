@@ -42,14 +42,12 @@ std::string magnetometer_yaml(const Calibration& calibration, const ParameterTab
   const auto note = [&](int parameter, double unit) -> std::string {
     const auto deviation = deviations.find(parameter);
     if (deviation == deviations.end()) return "";
-    return std::isfinite(deviation->second)
-               ? fmt::format("  # +- {:.2g}", unit * deviation->second)
-               : "  # not determined";
+    return std::isfinite(deviation->second) ? fmt::format("  # +- {:.2g}", unit * deviation->second)
+                                            : "  # not determined";
   };
   std::string text;
   for (const char* name : {"bias_x", "bias_y", "bias_z", "field"}) {
-    text += fmt::format("mag_{}: {}{}\n", name,
-                        number_to_yaml(kTesla * table[index(name)].value),
+    text += fmt::format("mag_{}: {}{}\n", name, number_to_yaml(kTesla * table[index(name)].value),
                         note(index(name), kTesla));
   }
   constexpr std::array<const char*, 9> kRows = {"xx", "xy", "xz", "xy", "yy",

@@ -27,11 +27,10 @@ std::string magnetometer_urdf(const std::string& link) {
 
 std::string magnetometer_config(const std::string& base_link, std::span<const Sample> samples) {
   constexpr std::ptrdiff_t kFewest = 12;
-  const auto count =
-      std::count_if(samples.begin(), samples.end(), [](const Sample& sample) {
-        return sample.conditions.contains("mag_x") && sample.conditions.contains("mag_y") &&
-               sample.conditions.contains("mag_z");
-      });
+  const auto count = std::count_if(samples.begin(), samples.end(), [](const Sample& sample) {
+    return sample.conditions.contains("mag_x") && sample.conditions.contains("mag_y") &&
+           sample.conditions.contains("mag_z");
+  });
   if (count < kFewest) {
     throw InputError(fmt::format(
         "--from: {} with readings of a magnetometer; a turn takes {} or more.  In a bag, they are "
@@ -81,8 +80,9 @@ std::string magnetometer_columns(std::string_view text, const std::string& file)
     if (found[axis].empty()) found[axis] = column.name;
   }
   if (std::any_of(found.begin(), found.end(), [](const auto& name) { return name.empty(); })) {
-    throw InputError(fmt::format("{}: no three columns are called mag_x, mag_y, mag_z (or mx ...); {}",
-                                 file, table.header_text));
+    throw InputError(
+        fmt::format("{}: no three columns are called mag_x, mag_y, mag_z (or mx ...); {}", file,
+                    table.header_text));
   }
   return fmt::format(
       "{} by the table's header: check it.\nseparator: {}\n"
@@ -92,7 +92,8 @@ std::string magnetometer_columns(std::string_view text, const std::string& file)
       : table.separator == ';'  ? "semicolon"
       : table.separator == '\t' ? "tab"
                                 : "space",
-      detail::name_to_yaml(found[0]), detail::name_to_yaml(found[1]), detail::name_to_yaml(found[2]));
+      detail::name_to_yaml(found[0]), detail::name_to_yaml(found[1]),
+      detail::name_to_yaml(found[2]));
 }
 
 }  // namespace kinecal
