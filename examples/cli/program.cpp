@@ -690,6 +690,13 @@ void add_detect(CLI::App& command, DetectOptions& options) {
               "or MCAP; each standstill of the robot gives a sample; may be repeated")
           ->allow_extra_args(false)
           ->type_name("FILE");
+  command
+      .add_option("--led", options.led,
+                  "which LEDs were on when, for a LedFinder: a topic of recordings whose messages "
+                  "have led_code or data, or a table with columns time and code; default: the "
+                  "gripper's commands, of robot_calibration_msgs/GripperLedCommandActionGoal")
+      ->needs(bag)
+      ->type_name("TOPIC|FILE");
   add_names(command, "--restless", options.restless,
             "joints that need not stand still in recordings, such as that of a scanner")
       ->allow_extra_args(false)

@@ -153,6 +153,14 @@ inline constexpr std::array kKnownMessages = {
     KnownMessage{"geometry_msgs/Twist",
                  "Vector3 linear\n"
                  "Vector3 angular\n"},
+    KnownMessage{"robot_calibration_msgs/GripperLedCommandActionGoal",
+                 "std_msgs/Header header\n"
+                 "actionlib_msgs/GoalID goal_id\n"
+                 "GripperLedCommandGoal goal\n",
+                 "a6f43a5345c808a3839fc4ee405e8697"},
+    KnownMessage{"robot_calibration_msgs/GripperLedCommandGoal", "uint8 led_code\n"},
+    KnownMessage{"actionlib_msgs/GoalID", "time stamp\nstring id\n"},  // of ROS 1
+    KnownMessage{"std_msgs/UInt8", "uint8 data\n", "7c8164229e7d2c17eb95e9231617fdee"},
     KnownMessage{"geometry_msgs/PointStamped",
                  "std_msgs/Header header\n"
                  "Point point\n"},
