@@ -18,6 +18,7 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/config/config_to_yaml.hpp"
 #include "kinecal/config/configured_sensor.hpp"
+#include "kinecal/config/doubts/accelerometer_axes.hpp"
 #include "kinecal/config/doubts/check_offsets.hpp"
 #include "kinecal/config/doubts/check_weight.hpp"
 #include "kinecal/config/doubts/enough_samples.hpp"

@@ -46,6 +46,7 @@
 #include "kinecal/files/poses/pose_numbers.hpp"
 #include "kinecal/files/poses/pose_table.hpp"
 #include "kinecal/files/poses/poses.hpp"
+#include "kinecal/files/recordings/accelerometer_messages.hpp"
 #include "kinecal/files/recordings/bag_output.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/base_messages.hpp"

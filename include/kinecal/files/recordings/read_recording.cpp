@@ -8,6 +8,7 @@
 
 #include "kinecal/files/csv/read_csv_samples.hpp"
 #include "kinecal/files/poses/hand_eye_samples.hpp"
+#include "kinecal/files/recordings/accelerometer_messages.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/base_messages.hpp"
 #include "kinecal/files/recordings/magnetometer_messages.hpp"
@@ -46,16 +47,18 @@ void check_names(const std::vector<Sample>& samples, Diagnostics& diagnostics) {
 
 /// What the topics of a bag show, beside robot_calibration's messages.
 struct SensedTopics {
-  bool drive = false, field = false;
+  bool drive = false, field = false, joints = false, imu = false;
 
   void look_at(const BagTopic& topic) {
     drive = drive || shows_base(topic);
     field = field || shows_magnetic_field(topic);
+    joints = joints || topic.type == "sensor_msgs/JointState";
+    imu = imu || topic.type == "sensor_msgs/Imu";
   }
 };
 
-/// The samples of a drive and of a magnetometer.
-/// @returns  false if the bag has neither
+/// The samples of a drive and of a magnetometer, or of an accelerometer.
+/// @returns  false if the bag has none of them
 [[nodiscard]] bool read_sensed(const std::string& path, const SensedTopics& topics,
                                std::vector<Sample>& samples, Diagnostics& diagnostics) {
   std::vector<Sample> of_field;
@@ -76,7 +79,10 @@ struct SensedTopics {
     if (!samples.empty()) sample.conditions[kRun] = ++run;
   }
   samples.insert(samples.end(), of_field.begin(), of_field.end());
-  return topics.drive || !of_field.empty();
+  if (topics.drive || !of_field.empty()) return true;
+  if (!topics.joints || !topics.imu) return false;
+  samples = read_gravity(path, diagnostics);
+  return true;
 }
 
 }  // namespace
