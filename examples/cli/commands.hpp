@@ -127,6 +127,9 @@ int init_hand_eye_samples(const InitOptions& options);
 /// Writes the configuration and capture.yaml of a calibration of cameras alone.
 int init_cameras(const InitOptions& options);
 
+/// Writes the configuration of a magnetometer from its readings; without --urdf, a URDF of it alone, too.
+int init_magnetometer(const InitOptions& options);
+
 /// Writes a first configuration from a URDF and a few answers.
 int init(const InitOptions& options);
 
@@ -152,6 +155,7 @@ struct DetectOptions {
   std::vector<std::string> restless;  ///< joints that need not stand still in recordings
   std::optional<double> every;        ///< seconds between views of a motion; nullopt: standstills
   std::string depth;        ///< folder of the images' depth, or topic of recordings; empty: none
+  std::string led;          ///< topic or table of codes of LEDs in recordings; empty: by type
   std::string camera;       ///< file; empty: none
   std::string urdf;         ///< file; empty: none
   std::string board_link;   ///< that holds boards; empty: their frame, if it is a link

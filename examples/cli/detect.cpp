@@ -159,6 +159,7 @@ void add_recordings(const DetectOptions& options, DetectionInput& task, Diagnost
     }
     recording.restless.insert(options.restless.begin(), options.restless.end());
     if (options.images.empty()) recording.depth = options.depth;
+    recording.led = is_led_table(options.led) ? options.led : detail::plain_topic(options.led);
     ProgressLine line;
     task.recordings.emplace_back(std::move(recording), task.config.finders, diagnostics,
                                  line.meter());
@@ -203,6 +204,14 @@ DetectionInput read_task(const DetectOptions& options, Diagnostics& diagnostics)
     check_links(options, *task.robot, diagnostics);
   }
   (void)make_finders(task, diagnostics.errors);
+  for (const CaptureFinder& finder : task.config.finders) {
+    if (options.images.empty() || !std::holds_alternative<LedFinder>(finder.settings)) continue;
+    try {
+      (void)view_finder(finder, finder.settings);
+    } catch (const InputError& error) {
+      diagnostics.errors.emplace_back(error.what());
+    }
+  }
   if (!options.camera.empty()) task.camera = read_camera_argument(options.camera, diagnostics);
   const std::vector<std::string> cameras = cameras_of(options);
   const auto folder_of_camera = [&](const std::string& camera) {

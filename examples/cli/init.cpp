@@ -636,6 +636,7 @@ std::vector<std::string> stands_of(const std::string& urdf_text, const std::stri
 }  // namespace
 
 int init(const InitOptions& given) {
+  if (given.targets == std::vector<std::string>{"magnetometer"}) return init_magnetometer(given);
   if (!given.poses.empty()) return init_hand_eye(given);
   if (!given.cameras.empty()) return init_cameras(given);
   if (!given.corners.empty()) throw InputError("--corners goes with --poses or --cameras");

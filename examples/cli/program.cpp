@@ -408,7 +408,8 @@ void add_init(CLI::App& command, InitOptions& options) {
           "also goes with another: leds,ground; robot (its own surface); or what the tip touches, "
           "with "
           "nothing but joints recorded: point, tool, sockets, plane, line, sphere, bar, distance; "
-          "grip (one thing in both hands); gravity (an accelerometer)")
+          "grip (one thing in both hands); gravity (an accelerometer); or magnetometer, from "
+          "recorded readings (--from)")
       ->delimiter(',')
       ->type_name(one_of("TARGET", target_words()));
   command
@@ -689,6 +690,13 @@ void add_detect(CLI::App& command, DetectOptions& options) {
               "or MCAP; each standstill of the robot gives a sample; may be repeated")
           ->allow_extra_args(false)
           ->type_name("FILE");
+  command
+      .add_option("--led", options.led,
+                  "which LEDs were on when, for a LedFinder: a topic of recordings whose messages "
+                  "have led_code or data, or a table with columns time and code; default: the "
+                  "gripper's commands, of robot_calibration_msgs/GripperLedCommandActionGoal")
+      ->needs(bag)
+      ->type_name("TOPIC|FILE");
   add_names(command, "--restless", options.restless,
             "joints that need not stand still in recordings, such as that of a scanner")
       ->allow_extra_args(false)

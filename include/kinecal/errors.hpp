@@ -10,6 +10,7 @@
 #include "kinecal/errors/error_block.hpp"
 #include "kinecal/errors/gravity_seen.hpp"
 #include "kinecal/errors/loss.hpp"
+#include "kinecal/errors/magnetic_field.hpp"
 #include "kinecal/errors/plane_fit.hpp"
 #include "kinecal/errors/plane_to_plane.hpp"
 #include "kinecal/errors/point_distance.hpp"

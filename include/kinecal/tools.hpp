@@ -27,6 +27,7 @@
 #include "kinecal/tools/init/init_answers.hpp"
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
+#include "kinecal/tools/init/magnetometer_config.hpp"
 #include "kinecal/tools/init/possible_targets.hpp"
 #include "kinecal/tools/init/proposed_columns.hpp"
 #include "kinecal/tools/init/robot_parts.hpp"

@@ -87,6 +87,16 @@ class Recorder {
                detail::fields("transforms", std::move(all)));
   }
 
+  /// A command to LEDs, to the gripper's action or as a number.
+  void led(const std::string& topic, const std::string& type, Stamp stamp, int code) {
+    const std::int64_t number = code;
+    if (type == "std_msgs/UInt8") {
+      bag_.write({topic, type}, stamp.count(), detail::fields("data", number));
+    } else {
+      write(topic, type, stamp, {}, detail::fields("goal", detail::fields("led_code", number)));
+    }
+  }
+
   void finish() { bag_.finish(); }
 
  private:

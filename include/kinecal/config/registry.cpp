@@ -236,6 +236,17 @@ Registry::Registry() {
   add(detail::base_entry<OdometryToWall>());
   add(built_in_block<GyroToPose>({}, {}, [](const BlockConfig&) { return GyroToPose{}; }));
   add(built_in_block<GyroToWall>({}, {}, [](const BlockConfig&) { return GyroToWall{}; }));
+  detail::NumberKeys of_magnetometer;
+  for (const ParameterInfo& own : MagneticField::kParameters)
+    of_magnetometer.emplace_back(own.name, own.initial);
+  of_magnetometer.emplace_back("scale", 1.0);
+  add(built_in_block<MagneticField>({}, of_magnetometer, [number](const BlockConfig& block) {
+    MagneticField made;
+    for (std::size_t i = 0; i < made.start.size(); ++i)
+      made.start[i] = number(block, MagneticField::kParameters[i].name.data());
+    if (!(made.start.back() > 0.0)) throw std::invalid_argument("field is not positive");
+    return made;
+  }));
 }
 
 void Registry::add(SensorEntry entry) {

@@ -6,6 +6,7 @@
 
 #include "kinecal/errors/base_motion.hpp"
 #include "kinecal/errors/gravity_seen.hpp"
+#include "kinecal/errors/magnetic_field.hpp"
 #include "kinecal/errors/plane_to_plane.hpp"
 #include "kinecal/errors/point_distance.hpp"
 #include "kinecal/errors/point_on_line.hpp"
@@ -29,6 +30,6 @@ using BuiltInBlock =
                  PointToSphere, PoseToPose, RayToRay, PointToRay, PointToMesh, PointToOutline,
                  PointOnPlane, PointOnLine, GravitySeen, DifferentialToPose, DifferentialToWall,
                  MecanumToPose, MecanumToWall, TricycleToPose, TricycleToWall, OdometryToPose,
-                 OdometryToWall, GyroToPose, GyroToWall>;
+                 OdometryToWall, GyroToPose, GyroToWall, MagneticField>;
 
 }  // namespace kinecal

@@ -17,7 +17,8 @@
   storage template class BlockTerm<OdometryToPose, Packet>;     \
   storage template class BlockTerm<OdometryToWall, Packet>;     \
   storage template class BlockTerm<GyroToPose, Packet>;         \
-  storage template class BlockTerm<GyroToWall, Packet>
+  storage template class BlockTerm<GyroToWall, Packet>;         \
+  storage template class BlockTerm<MagneticField, Packet>
 
 namespace kinecal::detail {
 KINECAL_BASE_BLOCK_CODE(extern);

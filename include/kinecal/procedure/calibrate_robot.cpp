@@ -17,6 +17,7 @@
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/hold_parameters.hpp"
+#include "kinecal/config/magnetometer_start.hpp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/explain/judge_causes.hpp"
 #include "kinecal/explain/would_help.hpp"
@@ -362,6 +363,7 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
   if (const auto names = detail::looks_before(config); !names.empty()) {
     set_before(prepared.samples, names);
   }
+  begin_magnetometer(config, prepared.samples, found);
   prepared.decides_cameras = waits || !config.per_sample.empty();
   if (!prepare_cameras(prepared.robot, config, prepared.samples, found)) return prepared;
   if (!is_open && waits) hold_parameters(config, options.hold, found);

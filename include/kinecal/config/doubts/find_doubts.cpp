@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/config/doubts/find_doubts.hpp"
 
+#include "kinecal/config/doubts/accelerometer_axes.hpp"
 #include "kinecal/config/doubts/check_weight.hpp"
 #include "kinecal/config/doubts/enough_samples.hpp"
 #include "kinecal/config/doubts/ignored_urdf.hpp"
@@ -38,6 +39,7 @@ void find_doubts(const CalibrationInput& input, Diagnostics& diagnostics) {
     detail::check_enough_samples(config, calibration, distinct, diagnostics);
     detail::check_measured_poses(config, robot, samples, diagnostics);
   }
+  detail::check_accelerometer_axes(config, robot, samples, diagnostics);
   detail::check_sensor_points(config, robot, samples, diagnostics);
   if (diagnostics.errors.size() > before) return;
   detail::check_spreads(config, robot, samples, diagnostics);

@@ -113,6 +113,15 @@ inline constexpr std::array kKnownMessages = {
                  "geometry_msgs/Vector3 linear_acceleration\n"
                  "float64[9] linear_acceleration_covariance\n",
                  "6a62c6daae103f4ff57a132d6f95cec2"},
+    KnownMessage{"sensor_msgs/MagneticField",
+                 "std_msgs/Header header\n"
+                 "geometry_msgs/Vector3 magnetic_field\n"
+                 "float64[9] magnetic_field_covariance\n",
+                 "2f3b0b43eed0c9501de0fa3ff89a45aa"},
+    KnownMessage{"geometry_msgs/Vector3Stamped",
+                 "std_msgs/Header header\n"
+                 "Vector3 vector\n",
+                 "7b324c7325e683bf02a9b14b01090ec7"},
     KnownMessage{"sensor_msgs/LaserScan",
                  "std_msgs/Header header\n"
                  "float32 angle_min\n"
@@ -144,6 +153,14 @@ inline constexpr std::array kKnownMessages = {
     KnownMessage{"geometry_msgs/Twist",
                  "Vector3 linear\n"
                  "Vector3 angular\n"},
+    KnownMessage{"robot_calibration_msgs/GripperLedCommandActionGoal",
+                 "std_msgs/Header header\n"
+                 "actionlib_msgs/GoalID goal_id\n"
+                 "GripperLedCommandGoal goal\n",
+                 "a6f43a5345c808a3839fc4ee405e8697"},
+    KnownMessage{"robot_calibration_msgs/GripperLedCommandGoal", "uint8 led_code\n"},
+    KnownMessage{"actionlib_msgs/GoalID", "time stamp\nstring id\n"},  // of ROS 1
+    KnownMessage{"std_msgs/UInt8", "uint8 data\n", "7c8164229e7d2c17eb95e9231617fdee"},
     KnownMessage{"geometry_msgs/PointStamped",
                  "std_msgs/Header header\n"
                  "Point point\n"},

@@ -8,8 +8,10 @@
 
 #include "kinecal/files/csv/read_csv_samples.hpp"
 #include "kinecal/files/poses/hand_eye_samples.hpp"
+#include "kinecal/files/recordings/accelerometer_messages.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/base_messages.hpp"
+#include "kinecal/files/recordings/magnetometer_messages.hpp"
 #include "kinecal/files/recordings/message_decoder.ipp"
 #include "kinecal/files/recordings/message_samples.ipp"
 #include "kinecal/samples/joint_moves.hpp"
@@ -41,6 +43,46 @@ void check_names(const std::vector<Sample>& samples, Diagnostics& diagnostics) {
       }
     }
   }
+}
+
+/// What the topics of a bag show, beside robot_calibration's messages.
+struct SensedTopics {
+  bool drive = false, field = false, joints = false, imu = false;
+
+  void look_at(const BagTopic& topic) {
+    drive = drive || shows_base(topic);
+    field = field || shows_magnetic_field(topic);
+    joints = joints || topic.type == "sensor_msgs/JointState";
+    imu = imu || topic.type == "sensor_msgs/Imu";
+  }
+};
+
+/// The samples of a drive and of a magnetometer, or of an accelerometer.
+/// @returns  false if the bag has none of them
+[[nodiscard]] bool read_sensed(const std::string& path, const SensedTopics& topics,
+                               std::vector<Sample>& samples, Diagnostics& diagnostics) {
+  std::vector<Sample> of_field;
+  if (topics.field) of_field = read_magnetometer(path, diagnostics);
+  if (topics.drive) {
+    Diagnostics of_drive;
+    samples = read_base_drive(path, of_drive);
+    for (const auto list : {&Diagnostics::errors, &Diagnostics::warnings, &Diagnostics::doubts,
+                            &Diagnostics::refutable, &Diagnostics::notes}) {
+      if (!of_field.empty() && !of_drive.errors.empty()) break;
+      (diagnostics.*list)
+          .insert((diagnostics.*list).end(), (of_drive.*list).begin(), (of_drive.*list).end());
+    }
+  }
+  double run = 0.0;  // each reading is a run of its own
+  for (const Sample& sample : samples) run = std::max(run, sample.conditions.at(kRun));
+  for (Sample& sample : of_field) {
+    if (!samples.empty()) sample.conditions[kRun] = ++run;
+  }
+  samples.insert(samples.end(), of_field.begin(), of_field.end());
+  if (topics.drive || !of_field.empty()) return true;
+  if (!topics.joints || !topics.imu) return false;
+  samples = read_gravity(path, diagnostics);
+  return true;
 }
 
 }  // namespace
@@ -81,17 +123,17 @@ Recording read_as_recorded(const std::string& path, Diagnostics& diagnostics, un
       if (const auto sample = decoder.decode(message, number)) samples.add(*sample, number);
     }
   };
-  bool is_drive = false;
+  detail::SensedTopics sensed;
   const auto wants = [&](const BagTopic& topic) {
     const TopicUse use = use_of(topic);
-    is_drive = is_drive || shows_base(topic);
+    sensed.look_at(topic);
     return use == TopicUse::samples || use == TopicUse::urdf;
   };
   read_bag(path, {wants, handle, meter}, diagnostics);
   recording.samples = samples.take(diagnostics);
-  if (number == 0 && is_drive && diagnostics.errors.size() == errors_before) {
-    recording.samples = read_base_drive(path, diagnostics);
-  } else if (number == 0 && diagnostics.errors.size() == errors_before) {
+  if (number == 0 && diagnostics.errors.size() == errors_before &&
+      !detail::read_sensed(path, sensed, recording.samples, diagnostics) &&
+      diagnostics.errors.size() == errors_before) {
     diagnostics.error({path, 0},
                       "no messages of robot_calibration_msgs/CalibrationData in this bag; "
                       "'kinecal inspect' shows what is in it");

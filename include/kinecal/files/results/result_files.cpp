@@ -16,6 +16,7 @@
 #include "kinecal/files/results/arm_files.hpp"
 #include "kinecal/files/results/base_file.hpp"
 #include "kinecal/files/results/depth_file.hpp"
+#include "kinecal/files/results/magnetometer_file.hpp"
 #include "kinecal/files/results/result_text.ipp"
 #include "kinecal/files/results/transform_files.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
@@ -165,6 +166,11 @@ std::vector<OutputFile> result_files(const Robot& robot, const std::string& urdf
       !base.empty()) {
     files.push_back({detail::dated("base_calibration", ".yaml", options.date), base});
     refer("base", "", files.back().name);
+  }
+  if (const std::string field = magnetometer_yaml(calibration, result.table, options.deviations);
+      !field.empty()) {
+    files.push_back({detail::dated("magnetometer_calibration", ".yaml", options.date), field});
+    refer("magnetometer", "", files.back().name);
   }
   std::string values = detail::values_yaml(robot, result, options.deviations);
   if (!references.empty()) values += references.substr(1) + "\n";

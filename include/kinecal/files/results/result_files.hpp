@@ -5,6 +5,7 @@
 //   rgb_<camera>.yaml      of each colour camera
 //   depth_correction_<camera>.yaml   of a depth camera with a polynomial: see depth_file.hpp
 //   base_calibration.yaml  the scales of a mobile base: see base_file.hpp
+//   magnetometer_calibration.yaml   hard and soft iron: see magnetometer_file.hpp
 //   calibrated_<arm>.urdf, kinematics_<arm>.yaml   of several arms: see arm_files.hpp
 //   <joint>.xml, ...       of a hand-eye calibration: see transform_files.hpp
 //   calibration.yaml       lines `name: value`, then the names of the files above, for

@@ -12,6 +12,14 @@
 #include "kinecal/capture/session/session.hpp"
 
 namespace kinecal {
+namespace {
+
+constexpr const char* kLedsAlone =
+    "LEDs have to be switched while a camera looks, so images alone do not do; capture LEDs on the "
+    "robot, or record them while they are switched (--bag)";
+
+}  // namespace
+
 namespace detail {
 namespace {
 
@@ -34,9 +42,7 @@ template <class F>
         } else if constexpr (Finder<Chosen>) {
           return shared_finder(chosen);
         } else {
-          throw std::invalid_argument(
-              "LEDs have to be switched while a camera looks, so images alone do not do; capture "
-              "LEDs on the robot");
+          throw std::invalid_argument(kLedsAlone);
         }
       },
       settings);
@@ -65,11 +71,14 @@ std::string unusable(const FinderSettings& settings, const View& view) {
       settings);
 }
 
-Detection detect(const View& view, std::span<const ViewFinder> finders, const std::string& source) {
+Detection detect(const View& view, std::span<const ViewFinder> finders, const std::string& source,
+                 const FindLeds& find_leds) {
   Detection detection;
   std::vector<FinderOutcome> outcomes;
   for (const ViewFinder& finder : finders) {
-    Found found = finder.find(view);
+    Found found = !finder.leds ? finder.find(view)
+                  : find_leds  ? find_leds(*finder.leds)
+                               : refused(kLedsAlone);
     detection.marks.insert(detection.marks.end(), found.marks.begin(), found.marks.end());
     detection.grid.insert(detection.grid.end(), found.grid.begin(), found.grid.end());
     for (const std::string& note : found.notes) {

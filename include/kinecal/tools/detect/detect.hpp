@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +17,11 @@ namespace kinecal {
 struct ViewFinder {
   std::string name;                             ///< as in the configuration
   std::function<Found(const View& view)> find;  ///< in one view
+  std::optional<LedFinder> leds = {};  ///< finds LEDs instead, in views of all their switches
 };
+
+/// Finds LEDs in the views that were recorded while they were switched.
+using FindLeds = std::function<Found(const LedFinder& finder)>;
 
 /// The result of one view.
 struct Detection {
@@ -39,8 +44,9 @@ struct Detection {
 [[nodiscard]] std::string unusable(const FinderSettings& settings, const View& view);
 
 /// Runs all finders on a view.
-/// @param source  of the samples, for messages: "poses.csv:3"
+/// @param source     of the samples, for messages: "poses.csv:3"
+/// @param find_leds  empty: LEDs are refused
 [[nodiscard]] Detection detect(const View& view, std::span<const ViewFinder> finders,
-                               const std::string& source);
+                               const std::string& source, const FindLeds& find_leds = {});
 
 }  // namespace kinecal

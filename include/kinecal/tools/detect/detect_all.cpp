@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "kinecal/capture/session/settling.hpp"
@@ -27,8 +28,11 @@ std::vector<ViewFinder> make_finders(const DetectionInput& input,
         throw InputError(finder.place.str() + ": finder '" + finder.name +
                          "' has a region in frame '" + frame + "'; give the robot with --urdf");
       }
-      finders.push_back(
-          view_finder(finder, input.robot ? on_robot(finder, *input.robot) : finder.settings));
+      const FinderSettings settings =
+          input.robot ? on_robot(finder, *input.robot) : finder.settings;
+      const auto* leds = std::get_if<LedFinder>(&settings);
+      finders.push_back(leds != nullptr ? ViewFinder{finder.name, {}, *leds}
+                                        : view_finder(finder, settings));
     } catch (const InputError& error) {
       errors.emplace_back(error.what());
     }

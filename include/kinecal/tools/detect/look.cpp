@@ -85,8 +85,10 @@ void join_observations(std::vector<Sample>& all, std::vector<Sample> more) {
 
 /// Looks at all views of one moment; the joints are those of the first, unless they move.
 /// @param source  of the samples, for messages
+/// @param find_leds  of each camera; empty: of none
 [[nodiscard]] Look look_once(std::vector<RecordedView> views, const CameraFinders& finders,
-                             const std::string& source, const std::string& name, bool thumbnails) {
+                             const std::string& source, const std::string& name, bool thumbnails,
+                             const std::vector<FindLeds>& find_leds = {}) {
   Look all;
   all.source = name;
   const std::string title = std::filesystem::path(name).filename().string();
@@ -98,7 +100,7 @@ void join_observations(std::vector<Sample>& all, std::vector<Sample> more) {
       View& view = *views[c].view;
       if (joints != nullptr && !views[c].in_motion) view.joints = *joints;
       joints = &view.joints;
-      found = detect(view, finders[c], source);
+      found = detect(view, finders[c], source, c < find_leds.size() ? find_leds[c] : FindLeds());
     } else {
       found.refused.push_back(views[c].refusal);
     }
@@ -158,11 +160,18 @@ std::vector<Look> look_at(const RecordedViews& recording, const LookOptions& opt
     detail::for_each_piece(static_cast<int>(batch.size()), threads, [&](int i, int thread) {
       RecordedStandstill& standstill = batch[static_cast<std::size_t>(i)];
       std::vector<RecordedView> views;
-      for (std::size_t c = 0; c < cameras; ++c) views.push_back(recording.view(standstill, c));
+      std::vector<FindLeds> find_leds;
+      for (std::size_t c = 0; c < cameras; ++c) {
+        views.push_back(recording.view(standstill, c));
+        find_leds.emplace_back([&recording, &standstill, c](const LedFinder& finder) {
+          return recording.find_leds(standstill, c, finder);
+        });
+      }
       looks[standstill.number] =
           detail::look_once(std::move(views), finders.of(thread), standstill.source,
-                            standstill.source, options.thumbnails);
+                            standstill.source, options.thumbnails, find_leds);
       standstill.views.clear();
+      standstill.switched.clear();
     });
     batch.clear();
     bytes = 0;

@@ -20,8 +20,10 @@
 #include <string_view>
 #include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "kinecal/capture/finders/led_search.hpp"
 #include "kinecal/files/messages/camera_message.hpp"
 #include "kinecal/files/messages/decode.hpp"
 #include "kinecal/files/messages/known_definitions.hpp"
@@ -99,7 +101,8 @@ struct RecordedSurvey {
   };
   std::map<std::string, Topic> topics = {};  ///< by name
   JointTracks joints{};
-  std::vector<std::int64_t> joints_ahead = {};  ///< as ViewStamp::ahead
+  std::map<std::string, std::vector<LedCommand>> leds = {};  ///< by topic
+  std::vector<std::int64_t> joints_ahead = {};               ///< as ViewStamp::ahead
 
   static bool wants(const BagTopic& topic) {
     constexpr std::array<std::string_view, 5> kTypes = {
@@ -136,7 +139,11 @@ struct RecordedSurvey {
  private:
   void take(Topic& topic, std::string_view type, const MessageFields& content,
             const ViewStamp& view) {
-    if (type == "sensor_msgs/JointState") {
+    if (!wants({.name = "", .type = std::string(type)})) {
+      const auto code = led_code(content);
+      if (!code) throw std::runtime_error("it has no led_code and no data that is a code of LEDs");
+      leds[topic.topic.name].push_back({view.stamp, *code});
+    } else if (type == "sensor_msgs/JointState") {
       joints.add(topic.topic.name, joints_of(content, view.stamp));
       joints_ahead.push_back(view.ahead);
     } else if (type == "sensor_msgs/CameraInfo") {
@@ -278,13 +285,15 @@ template <class T>
   return some;
 }
 
+/// Candidate views of a standstill, at most.
+inline constexpr std::size_t kMostLooks = 8;
+
 /// Candidate views of a standstill: a few in its middle two seconds, else the one nearest to its
 /// middle.  Skips its ends, because stamps and exposures are slightly off.
 /// @param views  sorted
 [[nodiscard]] inline std::vector<ViewStamp> worth_a_look(const std::vector<ViewStamp>& views,
                                                          const Standstill& time) {
   constexpr std::chrono::milliseconds kEnd{100}, kHalf{1000};
-  constexpr std::size_t kMost = 8;
   const Stamp middle = time.begin + (time.end - time.begin) / 2;
   const ViewStamp* nearest = nullptr;
   std::vector<ViewStamp> within;
@@ -295,7 +304,7 @@ template <class T>
     if (nearest == nullptr || away < std::chrono::abs(nearest->stamp - middle)) nearest = &view;
   }
   if (within.empty() && nearest != nullptr) within.push_back(*nearest);
-  return spread_out(within, kMost);
+  return spread_out(within, kMostLooks);
 }
 
 /// The view nearest to a moment; nullptr if absent.
@@ -663,13 +672,17 @@ class StandstillReader {
                    const std::function<void(RecordedStandstill)>& handle)
       : standstills_(std::move(standstills)), handle_(handle), missing_(standstills_.size(), 0) {
     for (std::size_t s = 0; s < standstills_.size(); ++s) {
-      for (const auto& camera : standstills_[s].views) {
-        for (const auto& view : camera) {
-          for (RawView::Part& part : view->parts) {
-            wanted_[part.topic].emplace(part.index, WantedPart{s, &part});
-            ++missing_[s];
-          }
+      const auto want = [&](RawView& view) {
+        for (RawView::Part& part : view.parts) {
+          wanted_[part.topic].emplace(part.index, WantedPart{s, &part});
+          ++missing_[s];
         }
+      };
+      for (const auto& camera : standstills_[s].views) {
+        for (const auto& view : camera) want(*view);
+      }
+      for (const auto& camera : standstills_[s].switched) {
+        for (const SwitchedView& view : camera) want(*view.raw);
       }
     }
   }
@@ -708,6 +721,9 @@ class StandstillReader {
     for (auto& camera : standstills_[s].views) {
       std::erase_if(camera, [](const auto& view) { return !view->complete(); });
     }
+    for (auto& camera : standstills_[s].switched) {
+      std::erase_if(camera, [](const SwitchedView& view) { return !view.raw->complete(); });
+    }
     handle_(std::move(standstills_[s]));
   }
 
@@ -730,7 +746,15 @@ RecordedViews::RecordedViews(RecordingOptions options, const std::vector<Capture
   detail::MessageForms forms;
   const auto handle = [&](const BagMessage& message) { survey_->add(message, forms); };
   Diagnostics own;
-  read_bag(options_.path, {detail::RecordedSurvey::wants, handle, meter}, own);
+  const bool looks_at_leds =
+      std::any_of(finders.begin(), finders.end(), [](const CaptureFinder& finder) {
+        return std::holds_alternative<LedFinder>(finder.settings);
+      });
+  const auto wants = [&](const BagTopic& topic) {
+    return detail::RecordedSurvey::wants(topic) ||
+           (looks_at_leds && switches_leds(topic, options_.led));
+  };
+  read_bag(options_.path, {wants, handle, meter}, own);
   survey_->sort_views();
   if (own.errors.empty()) {
     survey_->joints.choose(options_.joints, options_.path, own, in_motion());
@@ -740,6 +764,7 @@ RecordedViews::RecordedViews(RecordingOptions options, const std::vector<Capture
   if (own.errors.empty()) {
     depths_ = detail::depth_cameras(*survey_, cameras_, options_, own);
   }
+  if (own.errors.empty() && looks_at_leds) choose_leds(finders, own);
   if (own.errors.empty()) detail::check_clocks(*survey_, cameras_, options_.path, own);
   if (own.errors.empty()) {
     times_ = in_motion() ? detail::find_intervals(*survey_, cameras_, options_, own)
@@ -767,6 +792,7 @@ void RecordedViews::choose_cameras(const std::vector<CaptureFinder>& finders,
     camera_of_.push_back(static_cast<std::size_t>(known - cameras_.begin()));
     if (known == cameras_.end()) cameras_.push_back(topics);
   }
+  led_settle_.resize(cameras_.size());
   if (cameras_.size() > 1 && (options_.camera || !options_.frame.empty())) {
     diagnostics.error(
         {options_.path, 0},
@@ -775,26 +801,103 @@ void RecordedViews::choose_cameras(const std::vector<CaptureFinder>& finders,
   }
 }
 
+void RecordedViews::choose_leds(const std::vector<CaptureFinder>& finders,
+                                Diagnostics& diagnostics) {
+  const CaptureFinder* named = nullptr;
+  for (std::size_t f = 0; f < finders.size(); ++f) {
+    const auto* leds = std::get_if<LedFinder>(&finders[f].settings);
+    if (leds == nullptr) continue;
+    if (named == nullptr) named = &finders[f];
+    std::optional<Stamp>& settle = led_settle_[camera_of_[f]];
+    settle = std::max(settle.value_or(leds->settle), leds->settle);
+  }
+  const std::string about = "finder '" + named->name + "': ";
+  if (in_motion()) {
+    diagnostics.error(named->place, about +
+                                        "LEDs are switched while the robot stands still: they "
+                                        "do not go with --every");
+    return;
+  }
+  if (is_led_table(options_.led)) {
+    led_commands_ = read_led_table(options_.led, diagnostics);
+  } else if (!survey_->leds.empty()) {
+    auto chosen = survey_->leds.find(detail::plain_topic(named->action) + "/goal");
+    if (chosen == survey_->leds.end()) chosen = survey_->leds.begin();
+    led_commands_ = chosen->second;
+    std::stable_sort(led_commands_.begin(), led_commands_.end(),
+                     [](const LedCommand& a, const LedCommand& b) { return a.time < b.time; });
+  }
+  if (!led_commands_.empty()) return;
+  const std::string usual =
+      detail::plain_topic(named->action.empty() ? "gripper_led_action" : named->action) + "/goal";
+  diagnostics.error(
+      named->place,
+      about + "LEDs take the times at which they were switched: " + options_.path + " has no " +
+          (options_.led.empty() ? "commands to them, topic '" + printable(usual) +
+                                      "' of robot_calibration_msgs/GripperLedCommandActionGoal; "
+                                      "record it, or name a "
+                                      "topic of codes, or a table of time and code, with --led"
+                                : "codes of LEDs, led_code or data, on topic '" +
+                                      printable(options_.led) + "' of --led"));
+}
+
+std::shared_ptr<detail::RawView> RecordedViews::raw_view(const detail::ViewStamp& stamp,
+                                                         std::size_t camera) const {
+  const std::vector<std::string> topics = detail::parts_of(cameras_[camera]);
+  detail::RawView view{stamp.stamp, {}};
+  view.parts.reserve(2);
+  view.parts.push_back({topics.front(), stamp.index});
+  if (topics.size() > 1) {
+    const Stamp together = in_motion() ? detail::kTogetherInMotion : detail::kTogether;
+    const auto* other =
+        detail::companion(survey_->topics.at(topics[1]).views, stamp.stamp, together);
+    if (other == nullptr) return nullptr;
+    view.parts.push_back({topics[1], other->index});
+  }
+  return std::make_shared<detail::RawView>(std::move(view));
+}
+
 std::vector<std::shared_ptr<detail::RawView>> RecordedViews::planned(const Standstill& time,
                                                                      std::size_t camera) const {
-  const std::vector<std::string> topics = detail::parts_of(cameras_[camera]);
-  std::vector<std::shared_ptr<detail::RawView>> views;
-  const auto& main = survey_->topics.at(topics.front()).views;
-  const Stamp together = in_motion() ? detail::kTogetherInMotion : detail::kTogether;
-  for (const detail::ViewStamp& stamp :
-       in_motion() ? detail::middle_view(main, time) : detail::worth_a_look(main, time)) {
-    detail::RawView view{stamp.stamp, {}};
-    view.parts.reserve(2);
-    view.parts.push_back({topics.front(), stamp.index});
-    if (topics.size() > 1) {
-      const auto* other =
-          detail::companion(survey_->topics.at(topics[1]).views, stamp.stamp, together);
-      if (other == nullptr) continue;
-      view.parts.push_back({topics[1], other->index});
+  const auto& main = survey_->topics.at(detail::parts_of(cameras_[camera]).front()).views;
+  std::vector<detail::ViewStamp> of_interest =
+      in_motion() ? detail::middle_view(main, time) : detail::worth_a_look(main, time);
+  if (led_settle_[camera]) {  // with all LEDs off, so that images change by motion only
+    of_interest.clear();
+    for (const LedSpan& span : led_spans(led_commands_, time, *led_settle_[camera])) {
+      if (span.code != 0) continue;
+      const auto dark = detail::middle_view(main, span.time);
+      of_interest.insert(of_interest.end(), dark.begin(), dark.end());
     }
-    views.push_back(std::make_shared<detail::RawView>(std::move(view)));
+    of_interest = detail::spread_out(of_interest, detail::kMostLooks);
+  }
+  std::vector<std::shared_ptr<detail::RawView>> views;
+  for (const detail::ViewStamp& stamp : of_interest) {
+    if (auto view = raw_view(stamp, camera)) views.push_back(std::move(view));
   }
   return views;
+}
+
+std::vector<SwitchedView> RecordedViews::planned_switches(const Standstill& time,
+                                                          std::size_t camera) const {
+  constexpr int kMostPulses = 6;  // of an LED: so many views are in memory
+  if (!led_settle_[camera]) return {};
+  const auto& main = survey_->topics.at(detail::parts_of(cameras_[camera]).front()).views;
+  std::vector<SwitchedView> all;
+  std::map<int, int> pulses;
+  const auto add = [&](int code, const Standstill& within) {
+    for (const detail::ViewStamp& stamp : detail::middle_view(main, within)) {
+      if (auto raw = raw_view(stamp, camera)) all.push_back({code, std::move(raw)});
+    }
+  };
+  for (const LedSpan& span : led_spans(led_commands_, time, *led_settle_[camera])) {
+    const Stamp middle = span.time.begin + (span.time.end - span.time.begin) / 2;
+    if (span.code != 0 && ++pulses[span.code] > kMostPulses) continue;
+    if (span.code == 0 && all.size() > 1 && all.back().code == 0) continue;
+    if (all.empty()) add(span.code, {span.time.begin, middle});
+    add(span.code, all.empty() ? span.time : Standstill{middle, span.time.end});
+  }
+  return all;
 }
 
 void RecordedViews::read(const std::function<void(RecordedStandstill)>& handle,
@@ -807,7 +910,10 @@ void RecordedViews::read(const std::function<void(RecordedStandstill)>& handle,
     standstill.time = time;
     standstill.source = options_.path + " at " +
                         detail::stamp_text(time.begin + (time.end - time.begin) / 2 - start);
-    for (std::size_t c = 0; c < cameras_.size(); ++c) standstill.views.push_back(planned(time, c));
+    for (std::size_t c = 0; c < cameras_.size(); ++c) {
+      standstill.views.push_back(planned(time, c));
+      standstill.switched.push_back(planned_switches(time, c));
+    }
     standstills.push_back(std::move(standstill));
   }
   detail::StandstillReader reader(std::move(standstills), handle);
@@ -828,17 +934,53 @@ std::string RecordedViews::nothing_in(const ViewTopics& topics) const {
          "' has the same within " + std::to_string(detail::kTogetherInMotion.count()) + " ms";
 }
 
-RecordedView RecordedViews::view(const RecordedStandstill& standstill, std::size_t camera) const {
+View RecordedViews::decoded(const detail::RawView& raw, std::size_t camera) const {
   const ViewTopics& topics = cameras_.at(camera);
   std::optional<CameraInfo> settings = options_.camera;
   if (!settings && !topics.camera_info.empty()) {
     settings = survey_->topics.at(topics.camera_info).camera;
   }
+  return detail::decoded(raw, topics, settings, depths_.at(camera), options_.frame);
+}
+
+Found RecordedViews::find_leds(const RecordedStandstill& standstill, std::size_t camera,
+                               const LedFinder& finder) const {
+  const std::vector<SwitchedView>& all = standstill.switched.at(camera);
+  const auto view_of = [&](std::size_t i) {
+    View view = decoded(*all[i].raw, camera);
+    view.joints = survey_->joints.positions(view.stamp, standstill.time);
+    return view;
+  };
+  try {
+    std::size_t begin = 0;
+    while (begin < all.size() && all[begin].code != 0) ++begin;
+    if (begin == all.size())
+      return refused("there is no view with all LEDs off in this standstill");
+    const bool has_second = begin + 1 < all.size() && all[begin + 1].code == 0;
+    LedSearch search(finder, view_of(begin), view_of(begin + (has_second ? 1 : 0)));
+    int pulses = 0;
+    for (std::size_t i = begin + 1; i + 1 < all.size(); ++i) {
+      const auto led = std::find_if(finder.leds.begin(), finder.leds.end(),
+                                    [&](const Led& known) { return known.code == all[i].code; });
+      if (led == finder.leds.end() || all[i + 1].code != 0) continue;
+      search.pulse(static_cast<std::size_t>(led - finder.leds.begin()), view_of(i), view_of(i + 1));
+      ++pulses;
+    }
+    if (pulses == 0) {
+      return refused("none of its LEDs was switched on and off again while the robot stood still");
+    }
+    return search.found();
+  } catch (const std::runtime_error& error) {
+    return refused(error.what());
+  }
+}
+
+RecordedView RecordedViews::view(const RecordedStandstill& standstill, std::size_t camera) const {
   std::vector<View> views;
-  std::string failure = nothing_in(topics);
+  std::string failure = nothing_in(cameras_.at(camera));
   for (const auto& raw : standstill.views.at(camera)) {
     try {
-      views.push_back(detail::decoded(*raw, topics, settings, depths_.at(camera), options_.frame));
+      views.push_back(decoded(*raw, camera));
     } catch (const std::runtime_error& error) {
       failure = error.what();
     }

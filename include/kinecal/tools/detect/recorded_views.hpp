@@ -8,6 +8,8 @@
 // While the robot moves, each interval gives the image nearest to its middle, with the positions and
 // velocities of the joints at its stamp: samples for the lag of a camera behind the joints.  An
 // interval in which nothing has moved since the last view gives no image.
+//
+// LEDs that were switched while the robot stood still are found in a view of each switch (led_commands.hpp).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,6 +24,7 @@
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/tools/detect/joint_tracks.hpp"
+#include "kinecal/tools/detect/led_commands.hpp"
 #include "kinecal/tools/detect/view_topics.hpp"
 
 namespace kinecal {
@@ -32,6 +35,7 @@ struct RecordingOptions {
   std::vector<std::string> joints = {};   ///< topics of joint states, without slash; empty: all
   std::set<std::string> restless = {};    ///< joints that need not stand still
   std::string depth = {};                 ///< topic of the depth for images
+  std::string led = {};                   ///< topic or table of the codes of LEDs; empty: by type
   std::string frame = {};                 ///< of the camera; empty: from the messages
   std::optional<CameraInfo> camera = {};  ///< replaces camera_info, of the only camera
   std::optional<Robot> robot = {};        ///< its fixed joints are where frames are that tf lacks
@@ -43,7 +47,14 @@ struct RecordingOptions {
 namespace detail {
 struct RecordedSurvey;
 struct RawView;
+struct ViewStamp;
 }  // namespace detail
+
+/// A view, and the LEDs that are on in it.
+struct SwitchedView {
+  int code = 0;
+  std::shared_ptr<detail::RawView> raw;
+};
 
 /// A standstill or an interval, and messages of its views.
 struct RecordedStandstill {
@@ -52,6 +63,7 @@ struct RecordedStandstill {
   Standstill time;         ///< begin and end
   std::size_t bytes = 0;   ///< of the messages
   std::vector<std::vector<std::shared_ptr<detail::RawView>>> views;  ///< a few of each camera
+  std::vector<std::vector<SwitchedView>> switched;  ///< of each camera, in the order of time
 };
 
 /// The view of a camera in a standstill, or why it is missing.
@@ -89,7 +101,19 @@ class RecordedViews {
   /// The best view of a camera in a standstill or interval.  Several threads may call it.
   [[nodiscard]] RecordedView view(const RecordedStandstill& standstill, std::size_t camera) const;
 
+  /// LEDs, by the views of their switches in a standstill.  Several threads may call it.
+  [[nodiscard]] Found find_leds(const RecordedStandstill& standstill, std::size_t camera,
+                                const LedFinder& finder) const;
+
  private:
+  void choose_leds(const std::vector<CaptureFinder>& finders, Diagnostics& diagnostics);
+  /// Views of all switches of LEDs in a standstill, two of the first darkness.
+  [[nodiscard]] std::vector<SwitchedView> planned_switches(const Standstill& time,
+                                                           std::size_t camera) const;
+  /// The view of a message; nullptr if a part of it is missing.
+  [[nodiscard]] std::shared_ptr<detail::RawView> raw_view(const detail::ViewStamp& stamp,
+                                                          std::size_t camera) const;
+  [[nodiscard]] View decoded(const detail::RawView& raw, std::size_t camera) const;
   void choose_cameras(const std::vector<CaptureFinder>& finders, Diagnostics& diagnostics);
   [[nodiscard]] bool in_motion() const { return options_.every > Stamp{}; }
   /// Why a camera has no view in a standstill or interval.
@@ -106,6 +130,8 @@ class RecordedViews {
       depths_;                          ///< of each camera: its depth, if of another one
   std::vector<std::size_t> camera_of_;  ///< of each finder
   std::vector<Standstill> times_;
+  std::vector<LedCommand> led_commands_;          ///< sorted by time
+  std::vector<std::optional<Stamp>> led_settle_;  ///< of each camera that looks at LEDs
 };
 
 }  // namespace kinecal

@@ -260,6 +260,9 @@ void add_accelerometer(const Robot& robot, std::span<const Sample> samples,
   }
   answers.holder = chains.front()->name;
   if (answers.target_frame.empty()) answers.target_frame = chains.front()->frames.front();
+  if (answers.arm.empty() && robot.has_link(answers.target_frame)) {
+    answers.arm = answers.target_frame;  // the frame_id of a bag
+  }
   if (answers.arm.empty()) answers.arm = moving_arm(robot, samples, "");
 }
 

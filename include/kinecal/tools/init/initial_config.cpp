@@ -570,12 +570,16 @@ void free_touched_offsets(InitPlan& plan, const Robot& robot, const InitAnswers&
                               "contact_x",
                               {}});
   for (const char* other : {"contact_y", "contact_z"}) plan.free_params.push_back({"", other, {}});
-  free_axes(plan, answers.target_frame,
-            "How the accelerometer is turned on link " + name_to_yaml(answers.arm) +
-                ".  The URDF does not contain this frame.",
+  const bool is_link = robot.has_link(answers.target_frame);
+  free_axes(plan, is_link ? joint_of_tip(robot, answers.target_frame).name : answers.target_frame,
+            is_link ? "How the accelerometer is turned, by this joint of the URDF."
+                    : "How the accelerometer is turned on link " + name_to_yaml(answers.arm) +
+                          ".  The URDF does not contain this frame.",
             {false, false, false, true, true, true});
-  add_initial_value(plan, answers.target_frame,
-                    "Zeros are no guess: kinecal searches for what the URDF does not have.");
+  if (!is_link) {
+    add_initial_value(plan, answers.target_frame,
+                      "Zeros are no guess: kinecal searches for what the URDF does not have.");
+  }
   plan.error_blocks.push_back(
       {"At rest it reads gravity, m/s^2.  The noise is what residuals show.",
        "contact",

@@ -1,0 +1,135 @@
+// Definitions of magnetometer_start.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/config/magnetometer_start.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "kinecal/errors/magnetic_field.hpp"
+#include "kinecal/geometry/eigenpairs.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+constexpr std::array<const char*, 3> kReading = {"mag_x", "mag_y", "mag_z"};
+
+/// The reading of a sample; nullopt if it has none.
+[[nodiscard]] std::optional<Vector3<double>> reading_of(const Sample& sample) {
+  Vector3<double> reading;
+  for (std::size_t axis = 0; axis < kReading.size(); ++axis) {
+    const auto found = sample.conditions.find(kReading[axis]);
+    if (found == sample.conditions.end() || !std::isfinite(found->second)) return std::nullopt;
+    reading(static_cast<Eigen::Index>(axis)) = found->second;
+  }
+  return reading;
+}
+
+/// Mean and scatter of readings.
+struct Scatter {
+  std::vector<Vector3<double>> readings;
+  Vector3<double> mean = Vector3<double>::Zero();
+  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(3, 3);  ///< mean of (m - mean)(m - mean)^T
+
+  explicit Scatter(std::span<const Sample> samples) {
+    for (const Sample& sample : samples) {
+      if (const auto reading = reading_of(sample)) readings.push_back(*reading);
+    }
+    const double share = readings.empty() ? 0.0 : 1.0 / static_cast<double>(readings.size());
+    for (const auto& one : readings) mean += share * one;
+    for (const auto& one : readings) square += share * (one - mean) * (one - mean).transpose();
+  }
+};
+
+/// Bias and field by the linear fit, without what the readings do not show: the mean counts there.
+[[nodiscard]] std::pair<Vector3<double>, double> linear_start(const Scatter& of) {
+  const double share = 1.0 / static_cast<double>(of.readings.size());
+  double squares = of.square.trace();  // mean of |m - mean|^2
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const auto& one : of.readings) {
+    right += 0.5 * share * ((one - of.mean).squaredNorm() - squares) * (one - of.mean);
+  }
+  constexpr double kShown = 1e-6;  // of the largest
+  const Eigenpairs pairs = eigenpairs(of.square);
+  Vector3<double> bias = Vector3<double>::Zero();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    if (!(pairs.values(i) > kShown * pairs.values(2))) continue;
+    const Eigen::Vector3d axis = pairs.vectors.col(i);
+    bias += axis.dot(right) / pairs.values(i) * axis;
+  }
+  return {of.mean + bias, std::sqrt(squares + bias.squaredNorm())};
+}
+
+}  // namespace
+}  // namespace detail
+
+std::optional<ReadingsPlane> plane_of_readings(std::span<const Sample> samples) {
+  constexpr std::size_t kFewest = 4;
+  constexpr double kThin = 0.1;  // of how far they scatter in the plane
+  const detail::Scatter of(samples);
+  if (of.readings.size() < kFewest) return std::nullopt;
+  const detail::Eigenpairs pairs = detail::eigenpairs(of.square);
+  if (!(pairs.values(0) < kThin * kThin * pairs.values(2))) return std::nullopt;
+  return ReadingsPlane{of.mean, Vector3<double>(pairs.vectors.col(0)),
+                       std::sqrt(std::max(0.0, pairs.values(0)))};
+}
+
+void begin_magnetometer(Config& config, std::vector<Sample>& samples, Diagnostics& diagnostics) {
+  std::vector<BlockConfig*> blocks;
+  for (StepConfig& step : config.steps) {
+    for (BlockConfig& block : step.error_blocks) {
+      if (block.type == MagneticField::kType) blocks.push_back(&block);
+    }
+  }
+  if (blocks.empty()) return;
+  if (const auto plane = plane_of_readings(samples)) {
+    for (Sample& sample : samples) {
+      const auto reading = detail::reading_of(sample);
+      if (!reading) continue;
+      const Vector3<double> in_plane =
+          *reading - plane->normal.dot(*reading - plane->mean) * plane->normal;
+      for (std::size_t axis = 0; axis < detail::kReading.size(); ++axis) {
+        sample.conditions[detail::kReading[axis]] = in_plane(static_cast<Eigen::Index>(axis));
+      }
+    }
+    Vector3<double> normal = plane->normal;
+    Eigen::Index largest = 0;
+    normal.cwiseAbs().maxCoeff(&largest);
+    if (normal(largest) < 0.0) normal = -normal;
+    diagnostics.note(
+        blocks.front()->place,
+        fmt::format("the readings of the magnetometer are in a plane, within {:.2g} uT: it turned "
+                    "about one axis, ({:.2f}, {:.2f}, {:.2f}).  They show the bias beside this "
+                    "axis; the bias along it and the strength of the field take turns about other "
+                    "axes, too",
+                    plane->beside, normal.x(), normal.y(), normal.z()));
+  }
+  const detail::Scatter of(samples);
+  if (of.readings.size() < 2) return;
+  const auto [bias, field] = detail::linear_start(of);
+  if (!(field > 0.0)) {
+    diagnostics.error(blocks.front()->place,
+                      "the readings of the magnetometer are all the same: did it turn?");
+    return;
+  }
+  constexpr std::array<const char*, 3> kBias = {"bias_x", "bias_y", "bias_z"};
+  for (BlockConfig* block : blocks) {
+    auto& numbers = block->numbers;
+    const auto is_default = [&](const ParameterInfo& own) {
+      return numbers.at(std::string(own.name)) == own.initial;
+    };
+    const auto& own = MagneticField::kParameters;
+    if (!std::all_of(own.begin(), own.begin() + 3, is_default) || !is_default(own.back())) continue;
+    for (std::size_t axis = 0; axis < kBias.size(); ++axis) {
+      numbers[kBias[axis]] = bias(static_cast<Eigen::Index>(axis));
+    }
+    numbers["field"] = field;
+  }
+}
+
+}  // namespace kinecal

@@ -1,0 +1,90 @@
+// Where the calibration of a magnetometer begins.
+#include "kinecal/config/magnetometer_start.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kinecal/config/read_config.hpp"
+#include "support/magnetometer.hpp"
+
+namespace kinecal {
+namespace {
+
+using test::SimulatedMagnetometer;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Config config_of(const std::string& more, Diagnostics& found) {
+  return parse_config(
+      "base_link: base_link\nmodels: []\nfree_params: [mag_bias_x]\nerror_blocks:\n"
+      "- {name: mag, type: magnetic_field" +
+          more + "}\n",
+      "mag.yaml", found);
+}
+
+std::map<std::string, double> begun(std::vector<Sample> samples, Diagnostics& found,
+                                    const std::string& more = "") {
+  Config config = config_of(more, found);
+  begin_magnetometer(config, samples, found);
+  return config.steps.at(0).error_blocks.at(0).numbers;
+}
+
+TEST(MagnetometerStart, IsTheBiasAndTheFieldWithoutSoftIron) {
+  Diagnostics found;
+  const SimulatedMagnetometer of{.noise = 0.0, .all_ways = true};
+  const auto numbers = begun(of.samples(100, 1), found);
+  EXPECT_THAT(found.errors, IsEmpty());
+  EXPECT_THAT(found.notes, IsEmpty());
+  EXPECT_NEAR(numbers.at("bias_x"), of.bias.x(), 1e-9);
+  EXPECT_NEAR(numbers.at("bias_y"), of.bias.y(), 1e-9);
+  EXPECT_NEAR(numbers.at("bias_z"), of.bias.z(), 1e-9);
+  EXPECT_NEAR(numbers.at("field"), of.earth.norm(), 1e-9);
+}
+
+TEST(MagnetometerStart, LeavesWhatIsGiven) {
+  Diagnostics found;
+  const auto numbers = begun(SimulatedMagnetometer{.all_ways = true}.samples(100, 1), found,
+                             ", bias_x: 3.0, field: 48.0");
+  EXPECT_EQ(numbers.at("bias_x"), 3.0);
+  EXPECT_EQ(numbers.at("bias_y"), 0.0);
+  EXPECT_EQ(numbers.at("field"), 48.0);
+}
+
+/// A base turns about one axis, and the sensor may be tilted on it.
+TEST(MagnetometerStart, PutsATurnIntoItsPlane) {
+  const SimulatedMagnetometer of{.mount = {0.3, -0.2, 0.0}};
+  std::vector<Sample> samples = of.samples(200, 1);
+  const auto plane = plane_of_readings(samples);
+  ASSERT_TRUE(plane);
+  EXPECT_NEAR(plane->beside, of.noise, 0.1);
+  const Vector3<double> axis = exp(of.mount).transpose() * Vector3<double>(0, 0, 1);
+  EXPECT_NEAR(std::abs(plane->normal.dot(axis)), 1.0, 1e-3);
+  Diagnostics found;
+  Config config = config_of("", found);
+  begin_magnetometer(config, samples, found);
+  ASSERT_EQ(found.notes.size(), 1u);
+  EXPECT_THAT(found.notes[0], HasSubstr("it turned about one axis"));
+  EXPECT_LT(plane_of_readings(samples)->beside, 1e-9);
+}
+
+TEST(MagnetometerStart, IsRefusedWhereNothingTurned) {
+  Diagnostics found;
+  (void)begun(SimulatedMagnetometer{.earth = {0, 0, 0}, .noise = 0.0}.samples(20, 1), found);
+  EXPECT_THAT(found.errors, ElementsAre(HasSubstr("all the same: did it turn?")));
+}
+
+TEST(MagnetometerStart, LeavesOtherConfigurationsAlone) {
+  Diagnostics found;
+  Config config = parse_config(
+      "base_link: base_link\nmodels: []\nfree_params: [imu_scale]\nerror_blocks:\n"
+      "- {name: imu, type: gyro_to_wall}\n",
+      "base.yaml", found);
+  std::vector<Sample> samples = SimulatedMagnetometer{}.samples(50, 1);
+  const double before = samples[3].conditions.at("mag_z");
+  begin_magnetometer(config, samples, found);
+  EXPECT_EQ(samples[3].conditions.at("mag_z"), before);
+}
+
+}  // namespace
+}  // namespace kinecal

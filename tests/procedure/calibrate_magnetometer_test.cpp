@@ -1,0 +1,151 @@
+// Hard and soft iron of a magnetometer by a configuration, with the verdict that other calibrations have.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/results/magnetometer_file.hpp"
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/procedure/calibrate_robot.hpp"
+#include "kinecal/tools/init/magnetometer_config.hpp"
+#include "support/magnetometer.hpp"
+#include "support/robots.hpp"
+
+namespace kinecal {
+namespace {
+
+using test::SimulatedMagnetometer;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Bias and field as magnetometer_calibration of robot_calibration finds them: the least squares of
+/// |m - b| - F from the mean of the readings and the same field, without what it says of them.
+Eigen::Vector4d upstreams_hard_iron(const std::vector<Sample>& samples) {
+  Eigen::Vector4d x = Eigen::Vector4d::Zero();
+  const auto reading = [](const Sample& sample) {
+    return Eigen::Vector3d(sample.conditions.at("mag_x"), sample.conditions.at("mag_y"),
+                           sample.conditions.at("mag_z"));
+  };
+  for (const Sample& sample : samples)
+    x.head<3>() += reading(sample) / static_cast<double>(samples.size());
+  x(3) = 45.0;
+  constexpr int kIterations = 200;
+  for (int i = 0; i < kIterations; ++i) {
+    Eigen::Matrix4d square = 1e-9 * Eigen::Matrix4d::Identity();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    for (const Sample& sample : samples) {
+      const Eigen::Vector3d left = reading(sample) - x.head<3>();
+      Eigen::Vector4d row;
+      row << -left / left.norm(), -1.0;
+      square += row * row.transpose();
+      right += row * (left.norm() - x(3));
+    }
+    x -= square.ldlt().solve(right);
+  }
+  return x;
+}
+
+/// As init configures it.
+CalibratedRobot calibrated_from(const std::vector<Sample>& samples) {
+  Diagnostics found;
+  CalibrationSetup setup{
+      .robot = test::mobile_manipulator(),
+      .config = parse_config(magnetometer_config("base_link", samples), "mag.yaml", found)};
+  EXPECT_THAT(found.errors, IsEmpty());
+  setup.samples = samples;
+  return calibrate_robot(std::move(setup));
+}
+
+double value_of(const CalibratedRobot& of, const std::string& name) {
+  return of.result.table["mag_" + name].value;
+}
+double deviation_of(const CalibratedRobot& of, const std::string& name) {
+  return of.deviation(of.result.table.index("mag_" + name)).value_or(INFINITY);
+}
+
+SimulatedMagnetometer iron() {
+  SimulatedMagnetometer of{.all_ways = true};
+  of.soft << 1.08, 0.03, -0.02, 0.03, 0.95, 0.01, -0.02, 0.01, 1.0;
+  return of;
+}
+
+TEST(CalibrateMagnetometer, FindsHardAndSoftIron) {
+  const SimulatedMagnetometer of = iron();
+  const CalibratedRobot found = calibrated_from(of.samples(200, 3));
+  ASSERT_TRUE(found.result.converged);
+  EXPECT_EQ(found.judgement.verdict, Grade::good);
+  const std::vector<std::pair<std::string, double>> truth = {{"bias_x", of.bias.x()},
+                                                             {"bias_y", of.bias.y()},
+                                                             {"bias_z", of.bias.z()},
+                                                             {"xx", 0.08},
+                                                             {"yy", -0.05},
+                                                             {"xy", 0.03},
+                                                             {"xz", -0.02},
+                                                             {"yz", 0.01},
+                                                             {"field", of.earth.norm()}};
+  for (const auto& [name, value] : truth) {
+    EXPECT_NEAR(value_of(found, name), value, 4.0 * deviation_of(found, name)) << name;
+    EXPECT_LT(deviation_of(found, name), name.size() == 2 ? 0.005 : 0.3) << name;
+  }
+}
+
+/// As many ± cover the truth as they say.
+TEST(CalibrateMagnetometer, IntervalsCover) {
+  const SimulatedMagnetometer of = iron();
+  int covered = 0, all = 0;
+  for (unsigned seed = 10; seed < 30; ++seed) {
+    const CalibratedRobot found = calibrated_from(of.samples(120, seed));
+    for (const auto& [name, value] : {std::pair("bias_x", of.bias.x()),
+                                      {"bias_y", of.bias.y()},
+                                      {"bias_z", of.bias.z()},
+                                      {"xx", 0.08},
+                                      {"yz", 0.01}}) {
+      ++all;
+      if (std::abs(value_of(found, name) - value) < 1.96 * deviation_of(found, name)) ++covered;
+    }
+  }
+  EXPECT_GE(covered, all * 88 / 100)
+      << "of " << all;  // 95 % less two standard deviations and groups
+}
+
+/// Upstream's formula agrees on what a turn in place shows, and gives a number for what it does not show.
+TEST(CalibrateMagnetometer, ATurnInPlaceShowsTwoComponents) {
+  SimulatedMagnetometer of;
+  const std::vector<Sample> samples = of.samples(200, 4);
+  const CalibratedRobot found = calibrated_from(samples);
+  ASSERT_TRUE(found.result.converged);
+  const Eigen::Vector4d upstreams = upstreams_hard_iron(samples);
+  for (const auto& [name, axis] : {std::pair("bias_x", 0), {"bias_y", 1}}) {
+    EXPECT_NEAR(value_of(found, name), of.bias(axis), 4.0 * deviation_of(found, name));
+    EXPECT_LT(deviation_of(found, name), 0.1);
+    EXPECT_NEAR(upstreams(axis), of.bias(axis), 0.2);
+  }
+  EXPECT_FALSE(deviation_of(found, "bias_z") < 1e3) << "not determined";
+  EXPECT_GT(std::abs(upstreams(2) - of.bias.z()), 3.0) << upstreams.transpose();
+  EXPECT_NEAR(value_of(found, "field"), std::hypot(20.0, 1.0), 0.2) << "within the plane";
+}
+
+/// Under upstream's keys, tesla.
+TEST(CalibrateMagnetometer, TheFileHasUpstreamsKeys) {
+  CalibratedRobot found = calibrated_from(SimulatedMagnetometer{}.samples(100, 5));
+  ParameterTable& table = found.result.table;
+  for (const auto& [name, value] : {std::pair("bias_x", 12.5),
+                                    {"bias_y", -8.0},
+                                    {"bias_z", 0.25},
+                                    {"field", 20.0},
+                                    {"xx", 0.5},
+                                    {"xy", 0.0}}) {
+    table["mag_" + std::string(name)].value = value;
+  }
+  const int x = table.index("mag_bias_x"), z = table.index("mag_bias_z");
+  const std::string text =
+      magnetometer_yaml(found.setup.calibration, table, {{x, 0.25}, {z, INFINITY}});
+  EXPECT_THAT(text, HasSubstr("mag_bias_x: 1.25e-05  # +- 2.5e-07\n"));
+  EXPECT_THAT(text, HasSubstr("mag_bias_z: 2.5e-07  # not determined\n"));
+  EXPECT_THAT(text, HasSubstr("mag_soft_iron: [1.5, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]"));
+}
+
+}  // namespace
+}  // namespace kinecal
