@@ -42,7 +42,8 @@ PointCloud points_of(const LaserScan& scan) {
   PointCloud points(static_cast<int>(scan.ranges.size()), 1, no_point());
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double range = scan.ranges[i];
-    const bool counts = std::isfinite(range) && range > 0.0 && range >= scan.least && range <= scan.most;
+    const bool counts =
+        std::isfinite(range) && range > 0.0 && range >= scan.least && range <= scan.most;
     if (!counts) continue;
     const double angle = scan.first_angle + static_cast<double>(i) * scan.step;
     points.pixels[i] =
