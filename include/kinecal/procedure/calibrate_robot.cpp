@@ -17,6 +17,7 @@
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/hold_parameters.hpp"
+#include "kinecal/config/place_planes.hpp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/explain/judge_causes.hpp"
 #include "kinecal/explain/would_help.hpp"
@@ -333,7 +334,9 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
   const std::size_t before = found.errors.size();
   const auto is_good = [&] { return found.errors.size() == before; };
   const auto check_only = [&] {
-    if (prepared.config) (void)assemble(*prepared.config, prepared.robot, {}, found);
+    // Frames with a pose in each sample are given with the samples only.
+    if (prepared.config && prepared.config->per_sample.empty())
+      (void)assemble(*prepared.config, prepared.robot, {}, found);
     return std::move(prepared);
   };
   if (before > 0) return check_only();
@@ -362,6 +365,7 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
   if (const auto names = detail::looks_before(config); !names.empty()) {
     set_before(prepared.samples, names);
   }
+  place_planes(config, prepared.samples);
   prepared.decides_cameras = waits || !config.per_sample.empty();
   if (!prepare_cameras(prepared.robot, config, prepared.samples, found)) return prepared;
   if (!is_open && waits) hold_parameters(config, options.hold, found);
