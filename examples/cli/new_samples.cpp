@@ -16,9 +16,11 @@
 #include "kinecal/config/doubts/repeated_samples.hpp"
 #include "kinecal/config/doubts/sensor_points.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/config/place_planes.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/files/cameras/camera_info.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
+#include "kinecal/procedure/background_rounds.hpp"
 #include "kinecal/procedure/surface_rounds.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/reading.hpp"
@@ -266,7 +268,12 @@ NewSamples read_new_samples(const StoredResult& result, const NewSampleOptions& 
   if (!fresh.diagnostics.errors.empty()) return fresh;
   Config config = result.config;
   const bool is_of_surface = compares_surface(config);
+  place_planes(config, fresh.samples);
   if (is_of_surface) associate_new(result, options, config, fresh);
+  if (has_background(config, fresh.samples)) {
+    (void)leave_out_background(result.robot, result.values, config, fresh.samples, {},
+                               fresh.diagnostics);
+  }
   if (!fresh.diagnostics.errors.empty()) return fresh;
   doubt(config, result.robot, fresh.samples, fresh.diagnostics);
   if (!fresh.diagnostics.errors.empty()) return fresh;

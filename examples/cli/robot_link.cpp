@@ -57,6 +57,10 @@ struct RosParts {
 /// Topics of a finder's camera.
 RosCameraOptions camera_topics(const CaptureFinder& finder, const std::string& depth) {
   RosCameraOptions options;
+  if (std::holds_alternative<ScanFinder>(finder.settings)) {
+    options.cloud = finder.topic;
+    return options;
+  }
   options.camera_info = finder.camera_info;
   if (finder.type.ends_with("2d")) {
     options.image = finder.topic;

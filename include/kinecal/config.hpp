@@ -46,6 +46,7 @@
 #include "kinecal/config/missing_sensors.hpp"
 #include "kinecal/config/own_frames.hpp"
 #include "kinecal/config/parameters_from_config.hpp"
+#include "kinecal/config/place_planes.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/config/register.hpp"
 #include "kinecal/config/registry.hpp"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/procedure/background_rounds.hpp"
 #include "kinecal/procedure/calibrate_crate.hpp"
 #include "kinecal/procedure/calibrate_log.hpp"
 #include "kinecal/procedure/calibrate_robot.hpp"

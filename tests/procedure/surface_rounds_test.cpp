@@ -6,13 +6,16 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <random>
 
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/samples/read_samples.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/procedure/calibrate_robot.hpp"
 #include "support/data.hpp"
+#include "support/laser_room.hpp"
 #include "support/mesh_robot_test.hpp"
 
 namespace kinecal {
@@ -274,6 +277,73 @@ TEST_P(SurfaceOfMed7, ReachesTheReference) {
 
 INSTANTIATE_TEST_SUITE_P(Starts, SurfaceOfMed7,
                          testing::Values("calibrate.yaml", "calibrate_far.yaml"));
+
+/// A tilting laser in a room whose walls are a link of the URDF.
+CalibrationSetup laser_in_a_room(std::vector<Sample> samples, const std::string& loss = "") {
+  Diagnostics found;
+  CalibrationSetup setup{
+      .robot = parse_urdf(test::kLaserRoomUrdf, "room.urdf"),
+      .config = parse_config(
+          "base_link: base\nmodels:\n- {name: laser, type: chain3d, frame: laser}\n"
+          "free_params: [tilt]\nfree_frames:\n- {name: laser_joint, x: true, y: true, z: "
+          "true, roll: true, pitch: false, yaw: true}\nerror_blocks:\n- {name: room, "
+          "type: chain3d_to_mesh, model: laser, links: [room]" +
+              loss + "}\n",
+          "calibrate.yaml", found),
+      .samples = std::move(samples),
+      .urdf_text = test::kLaserRoomUrdf,
+      .urdf = "room.urdf"};
+  EXPECT_THAT(found.errors, IsEmpty());
+  return setup;
+}
+
+const test::LaserErrors kLaserErrors{0.02, {0.010, -0.008, 0.005}, {0.02, 0.0, -0.015}};
+
+/// @param deviations  what is found is within so many of its own standard deviations
+void expect_laser(const CalibratedRobot& calibrated, double deviations, double exact) {
+  const std::map<std::string, double> truth{
+      {"tilt", 0.02},           {"laser_joint_x", 0.010}, {"laser_joint_y", -0.008},
+      {"laser_joint_z", 0.005}, {"laser_joint_a", 0.02},  {"laser_joint_c", -0.015}};
+  for (const auto& [name, value] : truth) {
+    const int index = calibrated.result.table.find(name);
+    ASSERT_GE(index, 0) << name;
+    const auto deviation = calibrated.assessments.back().deviation(index);
+    ASSERT_TRUE(deviation) << name;
+    EXPECT_NEAR(calibrated.result.table[index].value, value, deviations * *deviation + exact)
+        << name;
+  }
+}
+
+TEST(SurfaceRoundsOfALaser, FindItsMountAndTheZeroOfItsJointInARoom) {
+  const CalibratedRobot exact =
+      calibrate_robot(laser_in_a_room(test::laser_samples(kLaserErrors, 0.0)));
+  expect_laser(exact, 0.0, 1e-6);
+  EXPECT_LT(exact.result.steps.back().final_cost, 1e-12) << "zero at the truth";
+  const CalibratedRobot noisy =
+      calibrate_robot(laser_in_a_room(test::laser_samples(kLaserErrors, 0.005)));
+  ASSERT_TRUE(noisy.is_usable()) << noisy.judgement.reasons.front();
+  expect_laser(noisy, 3.5, 0.0);
+}
+
+TEST(SurfaceRoundsOfALaser, LeaveOutWhatStandsInTheRoom) {
+  const CalibratedRobot calibrated = calibrate_robot(laser_in_a_room(
+      test::laser_samples(kLaserErrors, 0.005, 0.2), ", loss: {type: cauchy, scale: 0.02}"));
+  expect_laser(calibrated, 4.0, 1e-3);
+}
+
+TEST(SurfaceRoundsOfALaser, RefuseWallsThatAreElsewhere) {
+  std::vector<Sample> samples = test::laser_samples(kLaserErrors, 0.005);
+  for (Sample& sample : samples) {
+    double factor = 0.2;
+    for (Feature& feature : sample.observations[0].features) {
+      factor = factor > 0.9 ? 0.2 : factor + 0.13;
+      feature.point *= factor;
+    }
+  }
+  Diagnostics found = prepare(laser_in_a_room(std::move(samples))).diagnostics;
+  ASSERT_FALSE(found.errors.empty());
+  EXPECT_THAT(found.errors.front(), HasSubstr("the points do not lie on the robot"));
+}
 
 }  // namespace
 }  // namespace kinecal

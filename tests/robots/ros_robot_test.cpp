@@ -128,6 +128,20 @@ TEST_P(RosRobotTest, ACloudAloneHasBrightnessFromItsColour) {
   EXPECT_FALSE(view.camera.has_value());
 }
 
+TEST_P(RosRobotTest, AScanIsACloudOfOneRow) {
+  RosBridge bridge = connect();
+  RosCamera scanner(bridge, {.cloud = "/base_scan"});
+  const View view = scanner.next_view(Stamp::min());
+  EXPECT_EQ(view.frame, "laser_link");
+  EXPECT_TRUE(view.image.empty());
+  ASSERT_EQ(view.points.width, 5);
+  EXPECT_TRUE(
+      view.points(0, 0).isApprox(Vector3<float>(std::cos(0.5F), -std::sin(0.5F), 0.0F), 1e-6F));
+  EXPECT_TRUE(view.points(2, 0).isApprox(Vector3<float>(2.0F, 0.0F, 0.0F), 1e-6F));
+  for (const int nothing : {1, 3, 4}) EXPECT_TRUE(std::isnan(view.points(nothing, 0).x()));
+  EXPECT_NEAR(view.point_time, 0.001, 1e-9);
+}
+
 TEST_P(RosRobotTest, CompressedImagesAndDepthAreThoseThatWereNot) {
   RosBridge bridge = connect();
   const std::string info = "/camera/camera_info";

@@ -70,6 +70,18 @@ class Recorder {
                          std::int64_t{binning}, "binning_y", std::int64_t{binning}));
   }
 
+  /// A scan from the right to the left.
+  /// @param ranges     metres, of beams from `first` to -`first`, radians
+  /// @param time_step  from one beam to the next, seconds
+  void scan(const std::string& topic, Stamp stamp, double first, const std::vector<double>& ranges,
+            double time_step) {
+    const double step = -2.0 * first / (static_cast<double>(ranges.size()) - 1.0);
+    write(topic, "sensor_msgs/LaserScan", stamp, {},
+          detail::fields("angle_min", first, "angle_max", -first, "angle_increment", step,
+                         "time_increment", time_step, "range_min", 0.1, "range_max", 10.0, "ranges",
+                         detail::numbers(ranges)));
+  }
+
   /// @param pose  of `child` in `parent`, metres
   void transform(const std::string& topic, Stamp stamp, const std::string& parent,
                  const std::string& child, const Pose<double>& pose) {

@@ -44,6 +44,8 @@ struct View {
   GrayImage image;                   ///< empty if absent
   PointCloud points;                 ///< empty if absent
   MeasuredJoints joints;             ///< of the robot at that moment
+  /// Seconds from one point of a scan to the next, the first at the stamp; zero: all at the stamp.
+  double point_time = 0.0;
 };
 
 /// A place in the image, for pictures of what was found.

@@ -18,9 +18,11 @@
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/config/magnetometer_start.hpp"
+#include "kinecal/config/place_planes.hpp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/explain/judge_causes.hpp"
 #include "kinecal/explain/would_help.hpp"
+#include "kinecal/procedure/background_rounds.hpp"
 #include "kinecal/procedure/judge_read_back.hpp"
 #include "kinecal/procedure/surface_rounds.hpp"
 #include "kinecal/samples/joint_moves.hpp"
@@ -101,17 +103,6 @@ void leave_open(PreparedCalibration& prepared, Search search, bool is_proposed) 
     prepared.config->steps[s].error_blocks = poses.steps[s].error_blocks;
   }
   return {};
-}
-
-/// Begins where rounds of association ended: initial values and searches for poses have done their work.
-void begin_at(std::vector<double> values, Calibration& calibration) {
-  if (calibration.steps.empty()) return;
-  calibration.begin = std::move(values);
-  calibration.steps.front().assignments.clear();
-  for (CalibrationStep& step : calibration.steps) {
-    std::erase_if(step.unknown_frames, [](const UnknownFrame& frame) { return frame.has_guess; });
-    for (UnknownFrame& frame : step.unknown_frames) frame.axes.fill(-1);  // nothing is left to find
-  }
 }
 
 /// "raw" or "rectified", by camera, where it was chosen.
@@ -334,7 +325,9 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
   const std::size_t before = found.errors.size();
   const auto is_good = [&] { return found.errors.size() == before; };
   const auto check_only = [&] {
-    if (prepared.config) (void)assemble(*prepared.config, prepared.robot, {}, found);
+    // Frames with a pose in each sample are given with the samples only.
+    if (prepared.config && prepared.config->per_sample.empty())
+      (void)assemble(*prepared.config, prepared.robot, {}, found);
     return std::move(prepared);
   };
   if (before > 0) return check_only();
@@ -364,16 +357,21 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
     set_before(prepared.samples, names);
   }
   begin_magnetometer(config, prepared.samples, found);
+  place_planes(config, prepared.samples);
   prepared.decides_cameras = waits || !config.per_sample.empty();
   if (!prepare_cameras(prepared.robot, config, prepared.samples, found)) return prepared;
   if (!is_open && waits) hold_parameters(config, options.hold, found);
   if (!is_good()) return prepared;
   std::vector<double> begin;
   if (compares_surface(config)) begin = detail::match_surface(prepared, options, is_open);
+  if (is_good() && !is_open && begin.empty() && has_background(config, prepared.samples)) {
+    begin =
+        leave_out_background(prepared.robot, {}, config, prepared.samples, options.solving, found);
+  }
   if (!is_good()) return prepared;
   is_open ? detail::leave_open(prepared, options.search, is_proposed)
           : detail::assemble(prepared, options.exclude);
-  if (!begin.empty()) detail::begin_at(std::move(begin), prepared.calibration);
+  if (!begin.empty()) begin_at(std::move(begin), prepared.calibration);
   return prepared;
 }
 

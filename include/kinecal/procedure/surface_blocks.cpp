@@ -14,6 +14,7 @@
 #include "kinecal/errors/point_to_outline.hpp"
 #include "kinecal/files/urdf/visuals.hpp"
 #include "kinecal/geometry/rotation.hpp"
+#include "kinecal/sensors/depth/depth_camera.hpp"
 #include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
@@ -56,6 +57,7 @@ class SurfaceResolver {
       return *std::find_if(step.models.begin(), step.models.end(),
                            [&](const ModelConfig& one) { return one.name == name; });
     };
+    resolved.is_view = is_outline || model(resolved.pair.camera).type == DepthCamera::kType;
     if (!are_links(block, of.links)) return resolved;
     const std::pair key(of.geometry, of.links);
     if (const auto known = surfaces_.find(key); known != surfaces_.end()) {

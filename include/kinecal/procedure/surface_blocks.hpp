@@ -34,6 +34,8 @@ struct SurfaceBlock {
   RobotSurface surface;
   bool is_whole = true;     ///< no other link has a mesh, whose points may be near these
   bool is_outline = false;  ///< of masks (camera2d_to_mesh), not of points
+  bool is_view =
+      true;  ///< of a camera that measures all it sees; false: of a laser, which sees lines
 };
 
 /// Reads the surfaces that the blocks of a configuration need, and names their links in its models.

@@ -720,7 +720,7 @@ void judge_clouds(std::span<const SurfaceBlock> blocks, const StepConfig& of_ste
     report_fit(blocks[b], of, gate, hits[b], samples.size(), is_fitted, diagnostics);
     if (!is_fitted) continue;
     check_camera(blocks[b], of, problem, samples, values, diagnostics);
-    if (diagnostics.errors.size() == before) {
+    if (blocks[b].is_view && diagnostics.errors.size() == before) {
       check_coverage(blocks[b], of, problem, samples, values, diagnostics);
     }
   }

@@ -18,6 +18,7 @@
 #include "kinecal/files/messages/camera_message.hpp"
 #include "kinecal/files/messages/make.hpp"
 #include "kinecal/files/messages/message_fields.hpp"
+#include "kinecal/files/messages/scan_message.hpp"
 #include "kinecal/files/messages/view_message.hpp"
 #include "kinecal/robots/action_definitions.ipp"
 #include "kinecal/robots/bridge_client.hpp"
@@ -176,7 +177,7 @@ class ViewStreams {
       : robot_(&robot), options_(std::move(options)) {
     subscribe(options_.image, {"sensor_msgs/Image", "sensor_msgs/CompressedImage"});
     subscribe(options_.depth, {"sensor_msgs/Image", "sensor_msgs/CompressedImage"});
-    subscribe(options_.cloud, {"sensor_msgs/PointCloud2"});
+    subscribe(options_.cloud, {"sensor_msgs/PointCloud2", "sensor_msgs/LaserScan"});
     if (streams_.empty()) {
       throw std::invalid_argument("a camera needs a topic of images, depth or clouds");
     }
@@ -292,7 +293,7 @@ class ViewStreams {
     if (topic == options_.image) {
       view.image = gray_image(message);
     } else if (topic == options_.cloud) {
-      read_cloud(message, view.points, view.image);
+      read_points(message, view);
     } else if (view.camera) {
       view.points = points_of(depth_image(message), *view.camera);
     } else {

@@ -88,9 +88,10 @@ static_assert(RobotArm<RosArm>);
 
 /// Topics of a camera; empty: none.
 struct RosCameraOptions {
-  std::string image = {};        ///< sensor_msgs/Image or CompressedImage
-  std::string depth = {};        ///< the same in depth, registered to the image; needs camera_info
-  std::string cloud = {};        ///< sensor_msgs/PointCloud2; its colour replaces a missing image
+  std::string image = {};  ///< sensor_msgs/Image or CompressedImage
+  std::string depth = {};  ///< the same in depth, registered to the image; needs camera_info
+  /// sensor_msgs/PointCloud2, whose colour replaces a missing image, or LaserScan.
+  std::string cloud = {};
   std::string camera_info = {};  ///< sensor_msgs/CameraInfo
 };
 

@@ -43,6 +43,18 @@ Limits plausible_length_change(const AnyProblem& problem, const Joint& joint) {
   return {care, kRefused * kMost};
 }
 
+namespace {
+
+/// True for the name of an error block, which owns parameters of its own: the center of a sphere.
+[[nodiscard]] bool is_of_block(const AnyProblem& problem, const std::string& owner) {
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    if (problem.term(t).name == owner) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 bool is_unknown_lens(const AnyProblem& problem, int parameter) {
   const std::size_t first = problem.sample_poses().empty() ? kIntrinsics : 0;
   return std::any_of(problem.sensors().begin(), problem.sensors().end(), [&](const auto& sensor) {
@@ -73,7 +85,10 @@ Limits plausible_change(const AnyProblem& problem, int parameter) {
   if (problem.frames().contains(owner) || is_unknown_lens(problem, parameter)) {
     return {kNever, kNever};
   }
-  if (p.unit == "m") return {0.1, kNever};
+  if (p.unit == "m") {
+    const bool is_given = p.initial != 0.0 || !is_of_block(problem, owner);
+    return {is_given ? 0.1 : kNever, kNever};
+  }
   if (p.unit == "s") return {0.2, 1.0};                      // the lag of a sensor
   if (p.name.ends_with("_z_quadratic")) return {0.09, 0.3};  // of depth, at a metre
   return p.unit == "1" ? Limits{0.09, 0.3} : Limits{kNever, kNever};

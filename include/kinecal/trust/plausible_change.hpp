@@ -29,8 +29,8 @@ struct Limits {
 /// intrinsics, too: nobody knows them then.
 [[nodiscard]] bool is_unknown_lens(const AnyProblem& problem, int parameter);
 
-/// The largest plausible change of a parameter; a frame that is not in the URDF may be anywhere, and so may the
-/// coefficients of a lens.
+/// The largest plausible change of a parameter; a frame that is not in the URDF may be anywhere, and so may the coefficients of a
+/// lens, and a length of an error block that begins at zero: nobody said it.
 [[nodiscard]] Limits plausible_change(const AnyProblem& problem, int parameter);
 
 /// True for a parameter that is never negative: sag, play.

@@ -275,6 +275,65 @@ TEST_F(ReadCsvSamples, TakesIdsFromTheMappingOrFromColumns) {
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("has ids and id_columns")));
 }
 
+/// The numbers of points that a sensor observes in each sample.
+std::vector<std::size_t> points_of(const std::vector<Sample>& samples, const std::string& sensor) {
+  std::vector<std::size_t> numbers;
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(sensor);
+    numbers.push_back(seen == nullptr ? 0 : seen->features.size());
+  }
+  return numbers;
+}
+
+TEST_F(ReadCsvSamples, TakesAFileOfPointsForEachRow) {
+  write("line_1.txt", "10 20\n30 inf\n");
+  write("line_2.txt", "1 2\n3 4\n5 6\n");
+  write("line_10.txt", "");
+  const std::string mapping =
+      "joints: {columns: {pan: q}}\nobservations:\n"
+      "- {sensor: scanner, frame: scanner, unit: millimetres, table: 'line_{n}.txt', "
+      "separator: space, header: false, points: [[1, 0, 2]]}\n"
+      "- {sensor: arm, frame: hand, constant: [0, 0, 0]}\n";
+  const std::string table = "n,q\n1,0.1\n2,0.2\n10,0.3\n";
+  for (const char* files : {"line_{n}.txt", "line_*.txt"}) {
+    const auto samples = read(table, with(mapping, "line_{n}.txt", files));
+    ASSERT_THAT(diagnostics_.errors, IsEmpty());
+    EXPECT_THAT(diagnostics_.warnings,
+                ElementsAre(HasSubstr("line_10.txt: has no points; " +
+                                      (folder_ / "t.csv").string() + ":4 is without them")));
+    EXPECT_THAT(points_of(samples, "scanner"), ElementsAre(2u, 3u, 0u));
+    EXPECT_EQ(samples[0].observation("scanner")->features[0].point,
+              Vector3<double>(0.010, 0.0, 0.020));
+    EXPECT_TRUE(std::isnan(samples[0].observation("scanner")->features[1].point.z()));
+  }
+  (void)read(table, with(mapping, "line_{n}", "lin_{n}"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(AllOf(HasSubstr("t.csv:2: its table"),
+                                                     HasSubstr("lin_1.txt' does not exist"))));
+  (void)read(table, with(mapping, "line_{n}", "line_{m}"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:3: column 'm'")));
+  (void)read(table, with(mapping, "line_{n}", "line_1*"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("2 files for 3 rows")));
+  (void)read(table, with(mapping, "[[1, 0, 2]]", "[[1, 0, 3]]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("the table has columns 1 to 2")));
+}
+
+TEST_F(ReadCsvSamples, RowsOfAGroupAreThePointsOfOneSample) {
+  const std::string mapping =
+      "group: n\njoints: {columns: {pan: q}}\nobservations:\n"
+      "- {sensor: scanner, frame: scanner, points: [[x, 0, z]]}\n"
+      "- {sensor: arm, frame: hand, constant: [0, 0, 0]}\n";
+  const std::string table = "n,q,x,z\n1,0.1,1,2\n1,0.1,3,4\n2,0.2,5,6\n1,0.1,7,8\n";
+  const auto samples = read(table, mapping);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(points_of(samples, "scanner"), ElementsAre(3u, 1u));
+  EXPECT_THAT(points_of(samples, "arm"), ElementsAre(1u, 1u));
+  EXPECT_EQ(samples[0].observation("scanner")->features[2].point, Vector3<double>(7.0, 0.0, 8.0));
+  (void)read(with(table, "1,0.1,7", "1,0.2,7"), mapping);
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(AllOf(HasSubstr("t.csv:5: 'pan' is not where it is in"),
+                                HasSubstr("t.csv:2, although both have n '1'"))));
+}
+
 TEST_F(ReadCsvSamples, TakesConditionsFromColumns) {
   const std::string mapping =
       kMapping + std::string("conditions: {temperature: u, load: [l, dl]}\n");

@@ -27,6 +27,10 @@ const types = {
   "sensor_msgs/PointCloud2": () =>
     "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n" +
     "bool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense",
+  "sensor_msgs/LaserScan": () =>
+    "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n" +
+    "float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n" +
+    "float32[] ranges\nfloat32[] intensities",
   "sensor_msgs/RegionOfInterest": () =>
     "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\nbool do_rectify",
   "sensor_msgs/CameraInfo": (r) =>

@@ -65,6 +65,7 @@ const joints = topic("/joint_states", "sensor_msgs/JointState", options.joint_ty
 const camera = options.camera ?? "/camera";
 const image = topic(`${camera}/image`, "sensor_msgs/Image");
 const cloud = topic(`${camera}/points`, "sensor_msgs/PointCloud2");
+const scan = topic("/base_scan", "sensor_msgs/LaserScan");
 const compressedImage = topic(`${camera}/image/compressed`, "sensor_msgs/CompressedImage");
 const depth = topic(`${camera}/depth`, "sensor_msgs/Image");
 const compressedDepth = topic(`${camera}/depth/compressedDepth`, "sensor_msgs/CompressedImage");
@@ -80,6 +81,10 @@ function look() {
   const at = header(now + state.imageLead, "camera_optical_frame");
   image({ header: at, ...robot.image(now) });
   cloud({ header: at, ...robot.cloud(now) });
+  scan({
+    header: header(now, "laser_link"), angle_min: -0.5, angle_max: 0.5, angle_increment: 0.25, time_increment: 0.001,
+    scan_time: 0.04, range_min: 0.1, range_max: 10, ranges: [1, NaN, 2, Infinity, 20], intensities: [],
+  });
   compressedImage({ header: at, ...robot.compressedImage(now) });
   depth({ header: at, ...robot.depth() });
   compressedDepth({ header: at, ...robot.compressedDepth() });

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <random>
 
+#include "support/laser_room.hpp"
 #include "support/recording.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -435,6 +437,85 @@ TEST_F(RecordedViewsTest, WhatIsNotABagIsAnError) {
   write("a.mcap", "samples: []\n");
   (void)open();
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("a.mcap: is not a bag")));
+}
+
+/// A laser that tilts, in a room.
+class RecordedScans : public RecordedViewsTest {
+ protected:
+  RecordedScans() {
+    finders_[0].type = "ScanFinder";
+    finders_[0].topic = "/scan";
+    finders_[0].settings = ScanFinder{};
+  }
+  static double tilt_at(double time) { return 0.2 + 0.3 * std::sin(1.2 * time); }
+
+  /// @param time_step  between beams, seconds, as scans say it
+  void record_scans(double time_step) {
+    constexpr double kStep = 0.5e-3, kFirst = -1.2;  // seconds, radians
+    Recorder to(path(), Encoding::ros1);
+    to.frame = "laser";
+    for (int i = 0; i <= 300; ++i) {
+      const Stamp since = milliseconds(10 * i);
+      const double time = 0.01 * i;
+      to.joints("/joint_states", {kTourStart + since, {"tilt"}, {tilt_at(time)}});
+      if (i % 20 != 10) continue;
+      std::vector<double> ranges;
+      for (int beam = 0; beam <= 120; ++beam) {
+        ranges.push_back(
+            test::room_range(test::laser_pose(tilt_at(time + kStep * beam)), kFirst + 0.02 * beam));
+      }
+      ranges[7] = std::numeric_limits<double>::quiet_NaN();
+      ranges[8] = 0.01;
+      to.scan("/scan", kTourStart + since, kFirst, ranges, time_step);
+    }
+    to.finish();
+  }
+
+  /// The largest distance of a point to the room, metres, of all scans.
+  double farthest_off() {
+    double most = 0.0;
+    for (const RecordedView& seen : views_of(open({.path = path(), .every = milliseconds(400)}))) {
+      if (!seen.view) continue;  // joints are not known at the ends
+      std::vector<View> parts = seen.later;
+      parts.push_back(*seen.view);
+      ++scans_;
+      for (const View& part : parts) {
+        EXPECT_EQ(part.frame, "laser");
+        const Pose<double> laser = test::laser_pose(part.joints.position("tilt").value());
+        for (const Vector3<float>& point : part.points.pixels) {
+          if (!point.allFinite()) continue;
+          ++points_;
+          most = std::max(most, test::off_room(laser * Vector3<double>(point.cast<double>())));
+        }
+      }
+    }
+    return most;
+  }
+  int scans_ = 0, points_ = 0;
+};
+
+TEST_F(RecordedScans, GiveEachBeamTheJointsOfItsTime) {
+  record_scans(0.5e-3);
+  EXPECT_LT(farthest_off(), 2e-3) << "half a milliradian at ranges up to 5 m";
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings, IsEmpty());
+  EXPECT_GE(scans_, 5);
+  EXPECT_GT(points_, 60 * scans_) << "some beams leave the room or range_max";
+}
+
+TEST_F(RecordedScans, WithoutTimesOfBeamsAreAWarning) {
+  record_scans(0.0);
+  EXPECT_GT(farthest_off(), 5e-3);
+  EXPECT_THAT(diagnostics_.warnings,
+              ElementsAre(HasSubstr("topic 'scan': 15 scans have no time_increment")));
+}
+
+TEST_F(RecordedScans, WithoutJointStatesAreAnError) {
+  Recorder to(path(), Encoding::ros1);
+  to.scan("/scan", kTourStart, -1.0, {1.0, 1.0, 1.0}, 1e-3);
+  to.finish();
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("joint")));
 }
 
 }  // namespace

@@ -70,6 +70,22 @@ TEST(ViewTopics, WithoutACandidateTheTopicHasToBeRecorded) {
               ElementsAre(HasSubstr("a.bag has images on no topic; record 'image'")));
 }
 
+TEST(ViewTopics, OnlyAScanFinderLooksForScans) {
+  const RecordedTopic scan{"base_scan", "sensor_msgs/LaserScan", ""};
+  EXPECT_EQ(choose({kCloud, scan, kInfo}, finder(kPoints, "/x")).topics.cloud, "cam/points");
+  EXPECT_EQ(choose({kCloud, scan}, finder(kPoints, "/base_scan")).topics,
+            (ViewTopics{"", "", "base_scan", ""}));
+  CaptureFinder of_scans = finder("ScanFinder", "/x");
+  of_scans.settings = ScanFinder{};
+  const Chosen chosen = choose({kImage, kCloud, scan, kInfo}, of_scans);
+  EXPECT_EQ(chosen.topics, (ViewTopics{"", "", "base_scan", ""}));
+  EXPECT_THAT(chosen.diagnostics.notes,
+              ElementsAre(HasSubstr("takes scans from topic 'base_scan'")));
+  EXPECT_EQ(choose({kImage, kCloud}, of_scans).topics.cloud, "cam/points");
+  EXPECT_THAT(choose({kImage}, of_scans).diagnostics.errors,
+              ElementsAre(HasSubstr("scans or clouds on no topic")));
+}
+
 TEST(ViewTopics, PointsComeFromACloudOrFromDepthBesideAnImage) {
   EXPECT_EQ(choose({kImage, kCloud, kInfo}, finder(kPoints, "/x")).topics.cloud, "cam/points");
   const Chosen depth = choose({kImage, kDepth, kInfo}, finder(kPoints, "/cam/image_raw"));

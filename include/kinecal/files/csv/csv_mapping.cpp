@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -206,9 +207,27 @@ inline void read_csv_ids(ConfigMap& map, CsvObservation& observation) {
   }
 }
 
-/// `table:` and `match:`
-inline void read_csv_own_table(ConfigMap& map, CsvObservation& observation) {
+/// `separator:` and `header:` of a table.
+inline void read_csv_form_of_table(ConfigMap& map, char& separator, bool& header) {
+  constexpr std::array<std::pair<const char*, char>, 4> kSeparators{
+      {{"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"space", ' '}}};
+  const auto is_usual = [&](const auto& one) { return one.second == separator; };
+  const char* usual = std::find_if(kSeparators.begin(), kSeparators.end(), is_usual)->first;
+  const std::string name =
+      read_choice(map, "separator", usual, {"comma", "semicolon", "tab", "space"});
+  for (const auto& [known, character] : kSeparators) {
+    if (name == known) separator = character;
+  }
+  header = map.flag("header", header);
+}
+
+/// `table:`, `match:`, and how the table is read if not as that of the samples
+inline void read_csv_own_table(ConfigMap& map, const CsvMapping& mapping,
+                               CsvObservation& observation) {
   const ConfigEntry *table = map.find("table"), *match = map.find("match");
+  observation.separator = mapping.separator;
+  observation.header = mapping.header;
+  if (table != nullptr) read_csv_form_of_table(map, observation.separator, observation.header);
   if (match != nullptr) {
     observation.match = read_csv_sum(map, match->value, match->place);
     if (table == nullptr) map.error(match->place, "has match, but no table");
@@ -218,6 +237,10 @@ inline void read_csv_own_table(ConfigMap& map, CsvObservation& observation) {
   const auto name = config_text(table->value);
   if (!name) return map.error(table->place, describe_config(table->value) + " is not a file");
   observation.table = (std::filesystem::path(table->place.file).parent_path() / *name).string();
+  observation.table_place = table->place;
+  if (match != nullptr && observation.has_files()) {
+    map.error(match->place, "has match and a table for each sample; give one of them");
+  }
   if (!observation.constants.empty() || !observation.constant_poses.empty()) {
     map.error(table->place, "has a table and a constant; give one of them");
   }
@@ -258,7 +281,7 @@ inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {
                   " of points, pixels, poses, constant and constant_poses; give exactly one");
   }
   read_csv_ids(map, observation);
-  read_csv_own_table(map, observation);
+  read_csv_own_table(map, mapping, observation);
   check_csv_kinds(map, mapping, observation);
   map.report_unknown();
   mapping.observations.push_back(std::move(observation));
@@ -379,17 +402,17 @@ void read_csv_conditions(ConfigMap& file, const char* key, CsvMapping& mapping) 
 
 [[nodiscard]] CsvMapping read_csv_mapping(ConfigMap& file, CsvUse use) {
   CsvMapping mapping;
-  const std::string separator =
-      read_choice(file, "separator", "comma", {"comma", "semicolon", "tab", "space"});
-  mapping.separator = separator == "comma" ? ',' : separator == "tab" ? '\t' : ' ';
-  if (separator == "semicolon") mapping.separator = ';';
-  mapping.header = file.flag("header", true);
+  read_csv_form_of_table(file, mapping.separator, mapping.header);
   read_csv_joints(file, "joints", kAngles, mapping.joints);
   read_csv_joints(file, "sliding", kLengths, mapping.joints);
   read_csv_poses(file, mapping);
   read_csv_velocities(file, mapping);
   read_csv_conditions(file, "conditions", mapping);
   read_csv_conditions(file, "increments", mapping);
+  if (const ConfigEntry* group = file.find("group")) {
+    mapping.group = read_csv_sum(file, group->value, group->place);
+    if (mapping.group.size() > 1) file.error(group->place, "group is a list of columns");
+  }
   for (const ConfigEntry& entry : file.list("observations")) {
     if (auto map = file.map(entry, "observation")) read_csv_observation(*map, mapping);
   }

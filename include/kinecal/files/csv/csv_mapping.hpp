@@ -39,6 +39,14 @@
 //      match: image                 # a column of both tables; without it, each sample has all rows
 //      pixels: [[u, v]]
 //      id_columns: [id]
+//    - sensor: scanner              # a file for each sample: cells of the row stand in for {columns}, or, where no
+//      frame: scanner               #   column names the files, lines/*.txt are those of the rows in natural order;
+//      table: lines/{file}.txt      #   also PLY and PCD, whose columns are named x, y, z
+//      separator: space             # of this table, if they differ from the samples'
+//      header: false
+//      unit: millimetres
+//      points: [[1, 0, 2]]
+//   group: pose                     # rows with the same cell are one sample: a row for each of its points
 //
 // Give a column by its name or by its number from 1.  Each point becomes a feature.  A sensor may
 // occur several times with different frames: its features are appended.  If the frame changes from
@@ -106,8 +114,15 @@ struct CsvObservation {
   std::vector<Pose<double>> constant_poses = {};  ///< metres
   std::vector<int> ids;                           ///< of each feature; empty: not given here
   CsvSum id_columns;                              ///< one column for each; empty: see `ids`
-  std::string table = {};  ///< path of a table of its own; empty: the samples'
-  CsvSum match = {};       ///< one column of both tables; empty: all rows belong
+  std::string table =
+      {};  ///< path of a table of its own, of several if it has {column} or *; empty: the samples'
+  SourceLocation table_place = {};  ///< where the mapping names it
+  char separator = ',';             ///< of the table of its own
+  bool header = true;               ///< of the table of its own
+  CsvSum match = {};                ///< one column of both tables; empty: all rows belong
+
+  /// True if each sample has a file of its own.
+  [[nodiscard]] bool has_files() const { return table.find_first_of("{*") != std::string::npos; }
 };
 
 /// What the columns of a table mean.
@@ -119,6 +134,8 @@ struct CsvMapping {
   std::vector<CsvJoint> velocities;          ///< of all joints, in their order; or empty
   std::vector<CsvCondition> conditions;      ///< of every sample
   std::vector<CsvObservation> observations;  ///< of every sample
+  CsvSum group =
+      {};  ///< one column: rows with the same cell are one sample; empty: each row is one
 };
 
 /// What a table is read for.

@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -23,6 +24,8 @@
 #include "kinecal/files/csv/csv_columns.hpp"
 #include "kinecal/files/csv/csv_table.hpp"
 #include "kinecal/files/csv/csv_units.hpp"
+#include "kinecal/files/csv/point_file.hpp"
+#include "kinecal/files/natural_order.hpp"
 #include "kinecal/files/poses/pose_table.hpp"
 #include "kinecal/files/samples/feature_id_parameters.ipp"
 #include "kinecal/files/text_file.hpp"
@@ -30,6 +33,8 @@
 #include "kinecal/geometry/planar_motion.hpp"
 #include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/samples/sample.hpp"
+#include "kinecal/text/counted.hpp"
+#include "kinecal/text/printable.hpp"
 #include "kinecal/text/shell_command.hpp"
 
 namespace kinecal {
@@ -249,7 +254,10 @@ class CsvSamples {
     for (const auto& point : observation.constants) features.push_back({frame, point});
     for (const auto& point : observation.points) {
       Vector3<double> p;
-      for (Eigen::Index k = 0; k < 3; ++k) p(k) = value(row, points_[next++], observation.unit);
+      const bool may_be_far = !point[2].empty();  // a range of nothing
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        p(k) = value(row, points_[next++], observation.unit, may_be_far);
+      }
       if (!observation.unit.millimetres && !point[2].empty()) {
         doubt(row, "sensor '" + observation.sensor + "'", p.cwiseAbs().maxCoeff(), 100.0, "metres");
       }
@@ -321,7 +329,9 @@ class CsvSamples {
   }
 
   /// Radians, metres or pixels; zero without columns, and for a bad cell, which is reported.
-  [[nodiscard]] double value(const CsvRow& row, const Indices& columns, const CsvUnit& unit) {
+  /// @param may_be_far  infinite: not seen, as scanners write it
+  [[nodiscard]] double value(const CsvRow& row, const Indices& columns, const CsvUnit& unit,
+                             bool may_be_far = false) {
     double sum = 0.0;
     for (const auto& [index, column] : columns) {
       if (index >= row.cells.size()) {
@@ -332,6 +342,10 @@ class CsvSamples {
       }
       const std::string& cell = row.cells[index];
       const std::optional<double> number = csv_number(cell);
+      if (may_be_far && number && std::isinf(*number)) {
+        sum = std::numeric_limits<double>::quiet_NaN();
+        continue;
+      }
       if (!number || std::isinf(*number)) {
         const bool comma = cell.find(',') != std::string::npos;
         bad_cell(row, *column,
@@ -440,36 +454,48 @@ void doubt_csv_header(const CsvRow& row, const std::string& file, Diagnostics& d
                       "'header: false' in the columns' file and give columns by number, from 1");
 }
 
-/// The samples of a table, and what a column says in the row of each.
+/// A table, and the samples of its rows.
 struct CsvRead {
+  CsvTable table;
   std::vector<Sample> samples;
-  std::vector<std::string> cells;  ///< of the column; empty without one
+  std::vector<std::size_t> rows;  ///< of each sample, in the table
+
+  /// What a column says in the row of each sample.
+  /// @returns  empty, with an error, if there is no such column
+  [[nodiscard]] std::vector<std::string> cells(const CsvColumn& column,
+                                               Diagnostics& diagnostics) const {
+    const auto index = CsvColumns(table, diagnostics).find(column);
+    std::vector<std::string> all;
+    for (std::size_t s = 0; index && s < samples.size(); ++s) {
+      const std::vector<std::string>& row = table.rows[rows[s]].cells;
+      all.push_back(*index < row.size() ? row[*index] : "");
+    }
+    return all;
+  }
 };
 
 [[nodiscard]] CsvRead read_csv_rows(std::string_view text, const CsvMapping& mapping,
-                                    const CsvSum& column, const std::string& file,
-                                    Diagnostics& diagnostics) {
+                                    const std::string& file, Diagnostics& diagnostics) {
   CsvRead read;
-  const CsvTable table =
+  read.table =
       csv_table(text, mapping.separator, mapping.header ? CsvHeader::present : CsvHeader::absent,
                 file, diagnostics);
+  const CsvTable& table = read.table;
   if (table.rows.empty()) {
     diagnostics.error({file, 0}, "the table has no rows");
     return read;
   }
   if (mapping.header) doubt_csv_header(table.header, file, diagnostics);
   const std::size_t before = diagnostics.errors.size();
-  CsvColumns found(table, diagnostics);
-  const auto key = column.empty() ? std::nullopt : found.find(column.front());
-  CsvSamples reader(mapping, std::move(found), table.units, file, diagnostics);
+  CsvSamples reader(mapping, CsvColumns(table, diagnostics), table.units, file, diagnostics);
   if (diagnostics.errors.size() != before) return read;  // they would repeat in every row
   Increments increments(mapping);
   int missing = 0;
-  for (const CsvRow& row : table.rows) {
-    auto sample = reader.sample(row);
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    auto sample = reader.sample(table.rows[i]);
     if (!sample) continue;
     if (!increments.add(std::move(*sample), read.samples)) ++missing;
-    if (key) read.cells.resize(read.samples.size(), *key < row.cells.size() ? row.cells[*key] : "");
+    read.rows.resize(read.samples.size(), i);
   }
   reader.finish();
   if (missing > 0) {
@@ -483,50 +509,191 @@ struct CsvRead {
   return read;
 }
 
-/// Adds the features of a table to the samples they belong to.
-/// @param cells  of the samples, in the column that both tables have
-void add_own_table(const CsvMapping& mapping, const CsvObservation& observation,
-                   std::span<const std::string> cells, std::vector<Sample>& samples,
-                   Diagnostics& diagnostics) {
+/// Reads a table of features as samples without joints.
+[[nodiscard]] CsvRead read_own_rows(const CsvObservation& observation, std::string_view content,
+                                    const std::string& file, Diagnostics& diagnostics) {
   CsvMapping own;
-  own.separator = mapping.separator;
-  own.header = mapping.header;
   own.observations = {observation};
   own.observations.front().table.clear();
-  const std::string text = read_text_file(observation.table);
-  const CsvRead read = read_csv_rows(text, own, observation.match, observation.table, diagnostics);
-  if (read.cells.size() != (observation.match.empty() ? 0 : read.samples.size())) return;
-  std::map<std::string, std::vector<std::size_t>> rows;  // by what they match; "" without
-  for (std::size_t i = 0; i < read.samples.size(); ++i) {
-    rows[read.cells.empty() ? "" : read.cells[i]].push_back(i);
+  const std::optional<std::string> points = point_file_table(content, file);
+  own.separator = points ? ',' : observation.separator;
+  own.header = points ? true : observation.header;
+  return read_csv_rows(points ? *points : content, own, file, diagnostics);
+}
+
+/// Adds features to those of their sensor in a sample.
+void add_to(Sample& sample, Observation all) {
+  if (all.features.empty()) return;
+  const auto same = [&](const Observation& o) { return o.sensor == all.sensor; };
+  auto& seen = sample.observations;
+  const auto known = std::find_if(seen.begin(), seen.end(), same);
+  if (known == seen.end()) {
+    seen.push_back(std::move(all));
+  } else {
+    known->features.insert(known->features.end(), all.features.begin(), all.features.end());
   }
+}
+
+/// The features of some rows.
+[[nodiscard]] Observation observed_in(const CsvRead& read, const CsvObservation& observation,
+                                      std::span<const std::size_t> samples) {
+  Observation all{observation.sensor, {}, {}};
+  for (const std::size_t i : samples) {
+    const std::vector<Feature>& features = read.samples[i].observations.front().features;
+    all.features.insert(all.features.end(), features.begin(), features.end());
+  }
+  return all;
+}
+
+/// Adds the features of a table to the samples they belong to.
+/// @param text  of the table
+void add_own_table(const CsvObservation& observation, std::string_view text,
+                   const std::string& file, CsvRead& of_samples, Diagnostics& diagnostics) {
+  const CsvRead read = read_own_rows(observation, text, file, diagnostics);
+  if (read.samples.empty()) return;
+  const bool matches = !observation.match.empty();
+  std::vector<std::string> own, cells;
+  if (matches) {
+    own = read.cells(observation.match.front(), diagnostics);
+    cells = of_samples.cells(observation.match.front(), diagnostics);
+    if (own.size() != read.samples.size() || cells.size() != of_samples.samples.size()) return;
+  }
+  std::map<std::string, std::vector<std::size_t>> rows;  // by what they match; "" without
+  for (std::size_t i = 0; i < read.samples.size(); ++i) rows[matches ? own[i] : ""].push_back(i);
   std::set<std::string> used;
-  for (std::size_t s = 0; s < samples.size(); ++s) {
-    if (!read.cells.empty() && cells.size() <= s) continue;
-    const auto found = rows.find(read.cells.empty() ? "" : cells[s]);
+  for (std::size_t s = 0; s < of_samples.samples.size(); ++s) {
+    const auto found = rows.find(matches ? cells[s] : "");
     if (found == rows.end()) continue;
     used.insert(found->first);
-    Observation all{observation.sensor, {}, {}};
-    for (const std::size_t i : found->second) {
-      const std::vector<Feature>& features = read.samples[i].observations.front().features;
-      all.features.insert(all.features.end(), features.begin(), features.end());
-    }
-    if (all.features.empty()) continue;
-    const auto same = [&](const Observation& o) { return o.sensor == all.sensor; };
-    auto& seen = samples[s].observations;
-    const auto known = std::find_if(seen.begin(), seen.end(), same);
-    if (known == seen.end()) {
-      seen.push_back(std::move(all));
-    } else {
-      known->features.insert(known->features.end(), all.features.begin(), all.features.end());
-    }
+    add_to(of_samples.samples[s], observed_in(read, observation, found->second));
   }
-  for (std::size_t i = 0; i < read.cells.size(); ++i) {
-    if (!used.insert(read.cells[i]).second) continue;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (!used.insert(own[i]).second) continue;
     diagnostics.warnings.push_back(
         fmt::format("{}: no sample has {} '{}'; the features are left out", read.samples[i].source,
-                    observation.match.front().name, read.cells[i]));
+                    observation.match.front().name, own[i]));
   }
+}
+
+/// The files that match a name with one *, in natural order.
+[[nodiscard]] std::vector<std::string> matching_files(const std::string& pattern) {
+  const std::filesystem::path path(pattern);
+  const std::string name = path.filename().string();
+  const std::string begin = name.substr(0, name.find('*')), end = name.substr(name.find('*') + 1);
+  std::vector<std::string> names;
+  std::error_code unreadable;
+  const std::string folder = path.parent_path().empty() ? "." : path.parent_path().string();
+  for (const auto& file : std::filesystem::directory_iterator(folder, unreadable)) {
+    const std::string one = file.path().filename().string();
+    const bool is_one = one.size() >= begin.size() + end.size() && one.starts_with(begin) &&
+                        one.ends_with(end) && !one.starts_with('.');
+    if (is_one && file.is_regular_file()) names.push_back(one);
+  }
+  std::sort(names.begin(), names.end(), file_naturally_before);
+  for (std::string& one : names) one = (path.parent_path() / one).string();
+  return names;
+}
+
+/// The file of each sample; empty after an error.
+[[nodiscard]] std::vector<std::string> sample_files(const CsvObservation& observation,
+                                                    const CsvRead& of_samples,
+                                                    Diagnostics& diagnostics) {
+  std::vector<std::string> files;
+  if (observation.table.find('{') == std::string::npos) {
+    const std::vector<std::string> all = matching_files(observation.table);
+    if (all.size() != of_samples.table.rows.size()) {
+      diagnostics.error(observation.table_place,
+                        fmt::format("table '{}': {} for {} of the samples' table; each row needs "
+                                    "one, or name the files by a column: {{column}}",
+                                    observation.table, counted(all.size(), "file"),
+                                    counted(of_samples.table.rows.size(), "row")));
+      return {};
+    }
+    for (const std::size_t row : of_samples.rows) files.push_back(all[row]);
+    return files;
+  }
+  files.assign(of_samples.samples.size(), "");
+  std::string rest = observation.table;
+  while (!rest.empty()) {
+    const std::size_t begin = rest.find('{'), end = rest.find('}', begin);
+    const bool has_column = end != std::string::npos;
+    for (std::string& file : files) file += rest.substr(0, has_column ? begin : rest.size());
+    if (!has_column) break;
+    const std::vector<std::string> cells = of_samples.cells(
+        {rest.substr(begin + 1, end - begin - 1), observation.table_place}, diagnostics);
+    if (cells.size() != files.size()) return {};
+    for (std::size_t s = 0; s < files.size(); ++s) files[s] += cells[s];
+    rest = rest.substr(end + 1);
+  }
+  return files;
+}
+
+/// Adds the features of a file to each sample.
+void add_own_files(const CsvObservation& observation, CsvRead& of_samples,
+                   Diagnostics& diagnostics) {
+  const std::vector<std::string> files = sample_files(observation, of_samples, diagnostics);
+  for (std::size_t s = 0; s < files.size(); ++s) {
+    Sample& sample = of_samples.samples[s];
+    std::error_code unknown;
+    if (!std::filesystem::exists(files[s], unknown)) {
+      diagnostics.error({sample.source, 0},
+                        "its table '" + printable(files[s]) + "' does not exist");
+      return;
+    }
+    const std::string content = read_text_file(files[s]);
+    Diagnostics own;
+    const CsvRead read = read_own_rows(observation, content, files[s], own);
+    if (read.table.rows.empty()) {
+      diagnostics.warning({files[s], 0}, "has no points; " + sample.source + " is without them");
+      continue;
+    }
+    std::vector<std::size_t> all(read.samples.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    diagnostics.errors.insert(diagnostics.errors.end(), own.errors.begin(), own.errors.end());
+    for (const std::string& warning : own.warnings) {
+      if (s == 0) diagnostics.warnings.push_back(warning);  // the others are alike
+    }
+    if (!own.errors.empty()) return;  // they would repeat in every file
+    add_to(sample, observed_in(read, observation, all));
+  }
+}
+
+/// Leaves the first of the samples whose rows have the same cell.
+void keep_one_of_each_group(const CsvColumn& column, CsvRead& read, Diagnostics& diagnostics) {
+  constexpr double kSame = 1e-6;  // radians or metres
+  const std::vector<std::string> cells = read.cells(column, diagnostics);
+  if (cells.size() != read.samples.size()) return;
+  std::map<std::string, std::size_t> firsts;
+  std::vector<Sample> samples;
+  std::vector<std::size_t> rows;
+  for (std::size_t s = 0; s < cells.size(); ++s) {
+    const auto [first, is_first] = firsts.try_emplace(cells[s], samples.size());
+    if (is_first) {
+      samples.push_back(std::move(read.samples[s]));
+      rows.push_back(read.rows[s]);
+      continue;
+    }
+    const Sample &one = samples[first->second], &other = read.samples[s];
+    std::string moved;
+    for (std::size_t j = 0; j < one.joint_positions.size(); ++j) {
+      const double by = one.joint_positions[j] - other.joint_positions[j];
+      if (std::abs(by) > kSame && moved.empty()) moved = one.joint_names[j];
+    }
+    for (const auto& [joint, pose] : one.poses) {
+      const Pose<double>& then = other.poses.at(joint);
+      const bool is_same = (pose.translation - then.translation).norm() <= kSame &&
+                           (pose.rotation - then.rotation).norm() <= kSame;
+      if (!is_same && moved.empty()) moved = joint;
+    }
+    if (moved.empty()) continue;
+    diagnostics.error({other.source, 0},
+                      fmt::format("'{}' is not where it is in {}, although both have {} '{}' and "
+                                  "are one sample",
+                                  moved, one.source, column.name, cells[s]));
+    break;
+  }
+  read.samples = std::move(samples);
+  read.rows = std::move(rows);
 }
 
 }  // namespace
@@ -535,20 +702,28 @@ void add_own_table(const CsvMapping& mapping, const CsvObservation& observation,
 std::vector<Sample> csv_samples(std::string_view text, const CsvMapping& mapping,
                                 const std::string& file, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
-  CsvSum match;  // of the first table that has one; others may only repeat it
-  for (const CsvObservation& observation : mapping.observations) {
-    if (observation.match.empty()) continue;
-    if (!match.empty() && match.front().name != observation.match.front().name) {
-      diagnostics.error(observation.match.front().place,
-                        fmt::format("matches by column '{}', another table by '{}'; use one",
-                                    observation.match.front().name, match.front().name));
-    }
-    match = observation.match;
+  CsvMapping of_samples = mapping;
+  for (CsvObservation& observation : of_samples.observations) {
+    const bool is_same = observation.points.empty() && observation.poses.empty();
+    if (mapping.group.empty() || is_same || !observation.table.empty()) continue;
+    observation.table = file;
+    observation.match = mapping.group;
   }
-  detail::CsvRead read = detail::read_csv_rows(text, mapping, match, file, diagnostics);
-  for (const CsvObservation& observation : mapping.observations) {
+  detail::CsvRead read = detail::read_csv_rows(text, of_samples, file, diagnostics);
+  if (!mapping.group.empty() && diagnostics.errors.size() == before) {
+    detail::keep_one_of_each_group(mapping.group.front(), read, diagnostics);
+  }
+  for (std::size_t i = 0; i < mapping.observations.size(); ++i) {
+    const CsvObservation& observation = of_samples.observations[i];
     if (observation.table.empty() || diagnostics.errors.size() != before) continue;
-    detail::add_own_table(mapping, observation, read.cells, read.samples, diagnostics);
+    if (mapping.observations[i].table.empty()) {
+      detail::add_own_table(observation, text, file, read, diagnostics);
+    } else if (observation.has_files()) {
+      detail::add_own_files(observation, read, diagnostics);
+    } else {
+      detail::add_own_table(observation, detail::read_text_file(observation.table),
+                            observation.table, read, diagnostics);
+    }
   }
   std::erase_if(read.samples, [&](const Sample& sample) {
     return !mapping.observations.empty() && sample.observations.empty();

@@ -13,10 +13,12 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "kinecal/capture/finders/wall_in_scan.hpp"
 #include "kinecal/files/messages/message_fields.hpp"
+#include "kinecal/files/messages/scan_message.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/fixed_frames.hpp"
 #include "kinecal/files/recordings/message_decoder.ipp"
@@ -196,14 +198,14 @@ class BaseMessages {
     rate_ = rate;
   }
   void take_scan(double time, const MessageFields& content) {
-    std::vector<double> ranges;
-    for (const MessageValue& range : list_at(content, "ranges")) {
-      range.visit_number([&](auto x) { ranges.push_back(static_cast<double>(x)); });
-    }
     scanner_ = text_at(content, "header.frame_id");
-    const FoundWall found = wall_in_scan(
-        {ranges, number_at(content, "angle_min"), number_at(content, "angle_increment"),
-         number_at(content, "range_min"), number_at(content, "range_max")});
+    FoundWall found;
+    try {
+      const LaserScan scan = scan_of(content);
+      found = wall_in_scan(scan.view());
+    } catch (const std::runtime_error& error) {
+      found.refusal = error.what();
+    }
     walls_.push_back({time});
     if (found.wall) {
       walls_.back() = {time, found.wall->angle, found.wall->distance};

@@ -73,6 +73,16 @@ void join_observations(std::vector<Sample>& all, std::vector<Sample> more) {
   }
 }
 
+/// Adds what a later part of the same scan shows.  What finds nothing in any part is refused.
+void add_part(Detection& scan, Detection part) {
+  scan.features += part.features;
+  std::move(part.samples.begin(), part.samples.end(), std::back_inserter(scan.samples));
+  if (scan.samples.empty()) return;
+  std::erase_if(scan.refused, [&](const std::string& why) {
+    return std::find(part.refused.begin(), part.refused.end(), why) == part.refused.end();
+  });
+}
+
 /// The picture of a view; of none, a gray one.
 [[nodiscard]] Thumbnail view_picture(const std::optional<View>& view, Detection& found,
                                      const std::string& name, const std::string& reasons) {
@@ -100,7 +110,11 @@ void join_observations(std::vector<Sample>& all, std::vector<Sample> more) {
       View& view = *views[c].view;
       if (joints != nullptr && !views[c].in_motion) view.joints = *joints;
       joints = &view.joints;
-      found = detect(view, finders[c], source, c < find_leds.size() ? find_leds[c] : FindLeds());
+      const FindLeds leds = c < find_leds.size() ? find_leds[c] : FindLeds();
+      found = detect(view, finders[c], source, leds);
+      for (const View& part : views[c].later) {
+        add_part(found, detect(part, finders[c], source, leds));
+      }
     } else {
       found.refused.push_back(views[c].refusal);
     }

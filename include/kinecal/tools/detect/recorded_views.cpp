@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -27,6 +28,7 @@
 #include "kinecal/files/messages/camera_message.hpp"
 #include "kinecal/files/messages/decode.hpp"
 #include "kinecal/files/messages/known_definitions.hpp"
+#include "kinecal/files/messages/scan_message.hpp"
 #include "kinecal/files/messages/view_message.hpp"
 #include "kinecal/files/recordings/fixed_frames.hpp"
 #include "kinecal/files/recordings/read_bag.hpp"
@@ -98,6 +100,7 @@ struct RecordedSurvey {
     std::optional<CameraInfo> camera = {};  ///< the first one
     std::string image_part = {};            ///< the doubt about a partial image
     bool camera_changes = false;
+    std::size_t timeless = 0;  ///< scans that do not say when each beam was measured
   };
   std::map<std::string, Topic> topics = {};  ///< by name
   JointTracks joints{};
@@ -105,9 +108,9 @@ struct RecordedSurvey {
   std::vector<std::int64_t> joints_ahead = {};               ///< as ViewStamp::ahead
 
   static bool wants(const BagTopic& topic) {
-    constexpr std::array<std::string_view, 5> kTypes = {
-        "sensor_msgs/JointState", "sensor_msgs/Image", "sensor_msgs/CompressedImage",
-        "sensor_msgs/PointCloud2", "sensor_msgs/CameraInfo"};
+    constexpr std::array<std::string_view, 6> kTypes = {
+        "sensor_msgs/JointState",  "sensor_msgs/Image",     "sensor_msgs/CompressedImage",
+        "sensor_msgs/PointCloud2", "sensor_msgs/LaserScan", "sensor_msgs/CameraInfo"};
     return std::find(kTypes.begin(), kTypes.end(), topic.type) != kTypes.end();
   }
 
@@ -167,6 +170,8 @@ struct RecordedSurvey {
         topic.topic.encoding = encoding.empty() ? text_at(content, "format") : encoding;
       }
       topic.views.push_back(view);
+      const bool is_scan = type == "sensor_msgs/LaserScan";
+      if (is_scan && !(number_at(content, "time_increment") > 0.0)) ++topic.timeless;
     }
   }
 
@@ -256,7 +261,7 @@ struct RawView {
       if (part.topic == topics.image) {
         view.image = gray_image(message);
       } else if (part.topic == topics.cloud) {
-        read_cloud(message, view.points, view.image);
+        read_points(message, view);
       } else if (camera && depth) {
         view.points =
             registered_points(depth_image(message), *depth, *camera, kind_of_images(topics.image));
@@ -363,6 +368,49 @@ namespace {
   return intervals;
 }
 
+/// Parts of a scan during each of which no joint moves by more than half a milliradian, with the joints of its middle; a
+/// view of one moment is one part.
+/// @param[out] refusal  why joints are not known
+/// @returns  at least one part, unless it is refused
+[[nodiscard]] std::vector<View> parts_in_motion(View view, const JointTracks& tracks,
+                                                std::string& refusal) {
+  constexpr double kMoved = 5e-4;  // radians or metres
+  const std::size_t beams = view.points.pixels.size();
+  const auto after = [&](double points) {
+    return view.stamp + std::chrono::duration_cast<Stamp>(
+                            std::chrono::duration<double>(points * view.point_time));
+  };
+  const double half = 0.5 * static_cast<double>(beams);
+  JointsInMotion of_middle = tracks.motion(after(half));
+  refusal = std::move(of_middle.refusal);
+  if (!refusal.empty()) return {};
+  double fastest = 0.0;  // rad/s or m/s
+  for (const double v : of_middle.joints.velocities) fastest = std::max(fastest, std::abs(v));
+  const double moved = 2.0 * half * view.point_time * fastest;
+  const auto count = static_cast<std::size_t>(
+      std::clamp(std::ceil(moved / kMoved), 1.0, std::max(2.0 * half, 1.0)));
+  if (count == 1) {
+    view.joints = std::move(of_middle.joints);
+    return {std::move(view)};
+  }
+  std::vector<View> parts;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t first = k * beams / count, last = (k + 1) * beams / count;
+    View part = view;
+    part.points = PointCloud(static_cast<int>(last - first), 1, no_point());
+    std::copy(view.points.pixels.begin() + static_cast<std::ptrdiff_t>(first),
+              view.points.pixels.begin() + static_cast<std::ptrdiff_t>(last),
+              part.points.pixels.begin());
+    JointsInMotion joints = tracks.motion(after(0.5 * static_cast<double>(first + last)));
+    refusal = std::move(joints.refusal);
+    if (!refusal.empty()) return {};
+    part.joints = std::move(joints.joints);
+    part.stamp = part.joints.stamp;
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
 /// Whether joints stand where they stood in another view.  A robot that swings comes by the same
 /// place at speed.
 [[nodiscard]] bool stand_there(const MeasuredJoints& joints, const MeasuredJoints& before) {
@@ -417,8 +465,9 @@ std::size_t leave_out_rests(const RecordedSurvey& survey, const std::vector<View
 // Checks a recording, and finds when the robot stood still.
 
 /// Warnings about skipped messages; an error if a camera has no others.
+/// @param in_motion  whether views are taken while the robot moves
 void report_messages(const RecordedSurvey& survey, const std::vector<ViewTopics>& cameras,
-                     const std::string& file, Diagnostics& diagnostics) {
+                     const std::string& file, bool in_motion, Diagnostics& diagnostics) {
   std::set<std::string> used;
   for (const ViewTopics& camera : cameras) {
     for (const std::string& topic : parts_of(camera)) used.insert(topic);
@@ -441,6 +490,12 @@ void report_messages(const RecordedSurvey& survey, const std::vector<ViewTopics>
       diagnostics.warning({file, 0}, about + std::to_string(topic.unstamped) +
                                          " messages have no stamp; their times of recording are "
                                          "used");
+    }
+    if (in_motion && topic.timeless > 0) {
+      diagnostics.warning({file, 0},
+                          about + std::to_string(topic.timeless) +
+                              " scans have no time_increment: all their beams count as measured at "
+                              "the stamp, though the robot moves");
     }
     if (topic.camera_changes) {
       diagnostics.warning({file, 0}, about + "the camera's settings change; the first are used");
@@ -759,7 +814,7 @@ RecordedViews::RecordedViews(RecordingOptions options, const std::vector<Capture
   if (own.errors.empty()) {
     survey_->joints.choose(options_.joints, options_.path, own, in_motion());
     choose_cameras(finders, own);
-    detail::report_messages(*survey_, cameras_, options_.path, own);
+    detail::report_messages(*survey_, cameras_, options_.path, in_motion(), own);
   }
   if (own.errors.empty()) {
     depths_ = detail::depth_cameras(*survey_, cameras_, options_, own);
@@ -987,10 +1042,14 @@ RecordedView RecordedViews::view(const RecordedStandstill& standstill, std::size
   }
   if (views.empty()) return {{}, failure};
   if (in_motion()) {
-    JointsInMotion joints = survey_->joints.motion(views.front().stamp);
-    if (!joints.refusal.empty()) return {{}, std::move(joints.refusal)};
-    views.front().joints = std::move(joints.joints);
-    return {std::move(views.front()), {}, true, true};
+    RecordedView found{{}, {}, true, true};
+    std::vector<View> parts =
+        detail::parts_in_motion(std::move(views.front()), survey_->joints, found.refusal);
+    if (parts.empty()) return found;
+    found.view = std::move(parts.front());
+    found.later.assign(std::make_move_iterator(parts.begin() + 1),
+                       std::make_move_iterator(parts.end()));
+    return found;
   }
   const StillView chosen = still_view(views);
   if (!chosen.refusal.empty()) return {{}, chosen.refusal};

@@ -72,6 +72,8 @@ struct RecordedView {
   std::string refusal = {};       ///< empty if there is one
   bool compared = true;           ///< false: from a single image, which may have moved
   bool in_motion = false;         ///< true: the robot may move, and other views see it elsewhere
+  /// Of a scan during a motion: its later parts, each with joints of its own; `view` is the first.
+  std::vector<View> later = {};
 };
 
 /// A recording: see above.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <variant>
 
 #include "kinecal/files/bags/bag.hpp"
 #include "kinecal/files/messages/view_message.hpp"
@@ -22,10 +23,11 @@ namespace {
   return name;
 }
 
-enum class TopicKind { image, depth, cloud, camera_info, other };
+enum class TopicKind { image, depth, cloud, scan, camera_info, other };
 
 [[nodiscard]] TopicKind kind_of(const RecordedTopic& topic) {
   if (topic.type == "sensor_msgs/PointCloud2") return TopicKind::cloud;
+  if (topic.type == "sensor_msgs/LaserScan") return TopicKind::scan;
   if (topic.type == "sensor_msgs/CameraInfo") return TopicKind::camera_info;
   if (topic.type != "sensor_msgs/Image" && topic.type != "sensor_msgs/CompressedImage") {
     return TopicKind::other;
@@ -66,6 +68,10 @@ class TopicChoice {
     if (main == nullptr || kind_of(*main) == TopicKind::camera_info) main = only_main();
     if (main == nullptr) return topics;
     const TopicKind kind = kind_of(*main);
+    if (kind == TopicKind::scan) {
+      topics.cloud = main->name;
+      return topics;
+    }
     if (kind == TopicKind::cloud) {
       topics.cloud = main->name;
     } else if (!wants_points()) {
@@ -137,9 +143,15 @@ class TopicChoice {
   }
 
   [[nodiscard]] const RecordedTopic* only_main() {
-    auto all = candidates(wants_points() ? TopicKind::cloud : TopicKind::image);
-    std::string what = wants_points() ? "clouds" : "images";
-    if (all.empty() && wants_points()) {
+    const bool wants_scan = std::holds_alternative<ScanFinder>(finder_.settings);
+    auto all = candidates(wants_scan       ? TopicKind::scan
+                          : wants_points() ? TopicKind::cloud
+                                           : TopicKind::image);
+    std::string what = wants_scan ? "scans" : wants_points() ? "clouds" : "images";
+    if (all.empty() && wants_scan) {
+      all = candidates(TopicKind::cloud);
+      what = "scans or clouds";
+    } else if (all.empty() && wants_points()) {
       all = candidates(TopicKind::depth);
       what = "clouds or depth";
     }

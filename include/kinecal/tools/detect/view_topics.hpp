@@ -25,7 +25,7 @@ struct RecordedTopic {
 struct ViewTopics {
   std::string image = {};        ///< brightness or colour
   std::string depth = {};        ///< registered to the image
-  std::string cloud = {};        ///< points; its colour replaces a missing image
+  std::string cloud = {};        ///< points, whose colour replaces a missing image, or a scan
   std::string camera_info = {};  ///< settings of the camera
 
   bool operator==(const ViewTopics&) const = default;  ///< true if it is the same camera
