@@ -284,8 +284,9 @@ void check_options(const CaptureOptions& options) {
   }
   if (!options.result.empty()) check_results(calibration_of(options));
   if (!options.result.empty() && options.urdf.empty() && !output_encoding(options.output)) {
-    throw InputError("--urdf is required: samples in YAML do not have the URDF, which --result "
-                     "needs; or let the name of --output end in .bag or .mcap");
+    throw InputError(
+        "--urdf is required: samples in YAML do not have the URDF, which --result "
+        "needs; or let the name of --output end in .bag or .mcap");
   }
   check_reports(calibration_of(options));
   if (!(options.velocity > 0.0)) throw InputError("--velocity must be a number from 0.01 to 1");
@@ -385,9 +386,9 @@ struct Session {
   /// @returns  why the session ended before; empty if it did not
   [[nodiscard]] std::string run(const CaptureConfig& config) {
     const Interruption interruption;
-    AnyRobot hardware = connect(options.robot, config, robot, velocity_limits(urdf, urdf_name(options.urdf)),
-                                options.manual ? MovedBy::person : MovedBy::controllers,
-                                {options.joints, options.depth});
+    AnyRobot hardware = connect(
+        options.robot, config, robot, velocity_limits(urdf, urdf_name(options.urdf)),
+        options.manual ? MovedBy::person : MovedBy::controllers, {options.joints, options.depth});
     std::vector<SessionFinder> finders;
     for (const CaptureFinder& finder : config.finders) {
       finders.push_back(finder_of(finder, robot, hardware));
@@ -436,8 +437,8 @@ int capture(const CaptureOptions& options) {
   const CaptureConfig config = read_capture_config(options.config, diagnostics);
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
-  Session session{
-      options, urdf_of(options.urdf, options.robot), {}, {}, earlier_samples(options), {}};
+  Session session{options, urdf_of(options.urdf, options.robot), {}, {}, earlier_samples(options),
+                  {}};
   session.robot = parse_urdf(session.urdf, urdf_name(options.urdf));
   session.settling.continuous = continuous_joints(session.robot);
   const std::size_t before = session.samples.size();

@@ -210,8 +210,7 @@ int capture_poses(const CapturePosesOptions& options) {
   if (!options.config.empty()) config = read_capture_config(options.config, diagnostics);
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
-  const Robot robot =
-      parse_urdf(urdf_of(options.urdf, options.robot), urdf_name(options.urdf));
+  const Robot robot = parse_urdf(urdf_of(options.urdf, options.robot), urdf_name(options.urdf));
   check_chains(options.config, config, robot);
   std::vector<CapturePose> before;
   if (options.resume && std::filesystem::exists(options.output)) {

@@ -62,9 +62,17 @@ const Known& common_options() {
 
 const std::vector<Program>& programs() {
   const Known from_bag = {{"--from-bag", Follows::a_value}};
-  const Words of_base = {"verbose",        "min_angle",       "max_angle",  "accel_limit",
-                         "linear_accel_limit", "align_velocity", "align_gain", "align_tolerance",
-                         "r2_tolerance",   "base_controller/track_width", "imu_gyro_scale"};
+  const Words of_base = {"verbose",
+                         "min_angle",
+                         "max_angle",
+                         "accel_limit",
+                         "linear_accel_limit",
+                         "align_velocity",
+                         "align_gain",
+                         "align_tolerance",
+                         "r2_tolerance",
+                         "base_controller/track_width",
+                         "imu_gyro_scale"};
   static const std::vector<Program> all = {
       {"calibrate",
        "[POSES | --manual | --from-bag [BAG]]",
@@ -109,12 +117,11 @@ const Program* program_named(std::string_view name) {
 /// A call, taken apart.
 struct Call {
   const Program* program = nullptr;
-  Values options;    ///< by their names; flags are empty
-  Words words;       ///< others, such as POSES
-  Values parameters; ///< of the node
-  Values remaps;     ///< from and to; with --launch, values of its arguments
-  Words files;       ///< of parameters, in their order
-  bool is_ros2 = false;
+  Values options;     ///< by their names; flags are empty
+  Words words;        ///< others, such as POSES
+  Values parameters;  ///< of the node
+  Values remaps;      ///< from and to; with --launch, values of its arguments
+  Words files;        ///< of parameters, in their order
   std::string samples = "/tmp/calibration_data";  ///< how the name of recorded samples begins
 
   [[nodiscard]] bool has(const std::string& option) const { return options.contains(option); }
@@ -122,8 +129,7 @@ struct Call {
     const auto found = options.find(name);
     return found == options.end() ? otherwise : found->second;
   }
-  [[nodiscard]] std::string parameter(const std::string& name,
-                                      const std::string& otherwise) const {
+  [[nodiscard]] std::string parameter(const std::string& name, const std::string& otherwise) const {
     const auto found = parameters.find(name);
     return found == parameters.end() ? otherwise : found->second;
   }
@@ -149,9 +155,9 @@ std::string in_quotes(const std::string& text) {
 [[noreturn]] void refuse_word(const Call& call, const std::string& word, const std::string& kind,
                               const Words& known) {
   const std::string meant = did_you_mean(word, known);
-  refuse(call, in_quotes(word) + " is not " + kind +
-                   (meant.empty() ? "; it takes " + fmt::format("{}", fmt::join(known, ", "))
-                                  : meant));
+  refuse(call,
+         in_quotes(word) + " is not " + kind +
+             (meant.empty() ? "; it takes " + fmt::format("{}", fmt::join(known, ", ")) : meant));
 }
 
 /// Takes "name:=value" apart; nullopt if the word is not of this form.
@@ -183,7 +189,7 @@ class Parser {
     for (; at_ < arguments_.size(); ++at_) {
       const std::string& word = arguments_[at_];
       if (word == "--ros-args") {
-        in_ros_ = call_.is_ros2 = true;
+        in_ros_ = true;
       } else if (in_ros_ && word == "--") {
         in_ros_ = false;
       } else if (in_ros_) {
@@ -198,8 +204,7 @@ class Parser {
     }
     if (call_.words.size() > call_.program->most_words) {
       refuse(call_, in_quotes(call_.words[call_.program->most_words]) + " is one word too many; " +
-                        std::string(call_.program->name) + " " +
-                        std::string(call_.program->usage));
+                        std::string(call_.program->name) + " " + std::string(call_.program->usage));
     }
     return std::move(call_);
   }
@@ -291,9 +296,9 @@ const LaunchNode& node_of(const Call& call, const LaunchNodes& launch, const std
   }
   if (found != nullptr) return *found;
   others.insert(others.end(), launch.included.begin(), launch.included.end());
-  throw InputError(
-      file + ": starts no node '" + std::string(call.program->name) + "' of robot_calibration" +
-      (others.empty() ? "" : fmt::format("; it has {}", fmt::join(others, ", "))));
+  throw InputError(file + ": starts no node '" + std::string(call.program->name) +
+                   "' of robot_calibration" +
+                   (others.empty() ? "" : fmt::format("; it has {}", fmt::join(others, ", "))));
 }
 
 /// Adds what a launch file gives to its node.  What is on the command line comes first.
@@ -315,10 +320,9 @@ void add_launch(Call& call) {
   if (!launch.robot_description.empty()) call.options.emplace("--urdf", launch.robot_description);
   for (const LaunchNode& other : launch.nodes) {
     if (other.package != "rosbag" || other.type != "record") continue;
-    const auto name = std::find_if(other.arguments.begin(), other.arguments.end(),
-                                   [](const std::string& word) {
-                                     return word == "-o" || word == "--output-prefix";
-                                   });
+    const auto name = std::find_if(
+        other.arguments.begin(), other.arguments.end(),
+        [](const std::string& word) { return word == "-o" || word == "--output-prefix"; });
     if (name != other.arguments.end() && name + 1 != other.arguments.end()) {
       call.samples = *(name + 1);
     }
@@ -386,8 +390,9 @@ Configurations configurations(Call& call) {
       }
     }
     if (!is_used) {
-      refuse(call, file + " has none of the parameters of a capture (chains, features) or a "
-                          "calibration (models, error_blocks, calibration_steps)");
+      refuse(call, file +
+                       " has none of the parameters of a capture (chains, features) or a "
+                       "calibration (models, error_blocks, calibration_steps)");
     }
   }
   call.parameters.insert(own.begin(), own.end());  // those of the command line come first
@@ -436,12 +441,17 @@ std::string topic_of(const Call& call, const std::string& topic) {
   return {};
 }
 
+/// Launch files are of ROS 1.
+bool is_ros1(const Call& call, const UpstreamPlace& place) {
+  return place.is_ros1 || call.has("--launch");
+}
+
 /// The poses of a capture: as given, or upstream's default of either ROS.
 std::string poses_of(const Call& call, const UpstreamPlace& place) {
   if (!call.words.empty()) return call.words.front();
-  const Words names = call.is_ros2 || !place.is_ros1
-                          ? Words{"calibration_poses.yaml", "calibration_poses.bag"}
-                          : Words{"calibration_poses.bag", "calibration_poses.yaml"};
+  const Words names = is_ros1(call, place)
+                          ? Words{"calibration_poses.bag", "calibration_poses.yaml"}
+                          : Words{"calibration_poses.yaml", "calibration_poses.bag"};
   const auto found = std::find_if(names.begin(), names.end(), [](const std::string& name) {
     return std::filesystem::exists(name);
   });
@@ -452,8 +462,7 @@ UpstreamCall calibrate_call(Call call, const UpstreamPlace& place) {
   const Configurations files = configurations(call);
   if (files.calibrate.empty()) {
     refuse(call, "the configuration of the calibration is missing; " +
-                     how_configured(call, "calibrate.yaml") +
-                     ".  The parameter server of ROS 1 is not asked");
+                     how_configured(call, "calibrate.yaml"));
   }
   UpstreamCall done;
   if (call.has("--from-bag")) {
@@ -466,10 +475,11 @@ UpstreamCall calibrate_call(Call call, const UpstreamPlace& place) {
     return done;
   }
   if (files.capture.empty()) {
-    refuse(call, "the configuration of the capture is missing; " +
-                     how_configured(call, "capture.yaml"));
+    refuse(call,
+           "the configuration of the capture is missing; " + how_configured(call, "capture.yaml"));
   }
-  const std::string samples = call.samples + "_" + place.date + (call.is_ros2 ? ".mcap" : ".bag");
+  const std::string samples =
+      call.samples + "_" + place.date + (is_ros1(call, place) ? ".bag" : ".mcap");
   Words capture = {"capture", shell_file(files.capture)};
   add(capture, "--robot", call.option("--robot", kBridge));
   add(capture, "--urdf", call.option("--urdf", ""));
@@ -495,7 +505,8 @@ UpstreamCall capture_poses_call(Call call, const UpstreamPlace& place) {
   add(line, "--robot", call.option("--robot", kBridge));
   add(line, "--urdf", call.option("--urdf", ""));
   add(line, "--joint-states", topic_of(call, "joint_states"));
-  const std::string name = place.is_ros1 ? "calibration_poses.bag" : "calibration_poses.yaml";
+  const std::string name =
+      is_ros1(call, place) ? "calibration_poses.bag" : "calibration_poses.yaml";
   add(line, "--output", call.words.empty() ? name : call.words.front());
   if (call.has("--force")) line.emplace_back("--force");
   return {{line}, {}, {}, false};
@@ -514,8 +525,7 @@ UpstreamCall viz_call(Call call, const UpstreamPlace& place) {
   if (files.calibrate.empty()) {
     refuse(call, "the configuration is missing; " + how_configured(call, "calibrate.yaml"));
   }
-  const std::string stem =
-      (std::filesystem::path(call.output()) / ("viz_" + place.date)).string();
+  const std::string stem = (std::filesystem::path(call.output()) / ("viz_" + place.date)).string();
   Words line = {"calibrate"};
   add(line, "--urdf", call.option("--urdf", ""));
   add(line, "--config", files.calibrate);
@@ -523,11 +533,12 @@ UpstreamCall viz_call(Call call, const UpstreamPlace& place) {
   line.insert(line.end(), {"--dry-run", "--quiet"});
   add(line, "--report", stem + ".html");
   add(line, "--scene", stem + ".mcap");
-  return {{line},
-          {},
-          "look at " + stem + ".html in a browser, and at " + stem +
-              ".mcap with Foxglove or Lichtblick: the robot and what was measured, before and after",
-          false};
+  return {
+      {line},
+      {},
+      "look at " + stem + ".html in a browser, and at " + stem +
+          ".mcap with Foxglove or Lichtblick: the robot and what was measured, before and after",
+      false};
 }
 
 UpstreamCall to_rpy_call(const Call& call) {
@@ -629,8 +640,9 @@ UpstreamCall calibrate_robot_call(const Call& call, const UpstreamPlace& place) 
   if (all.lines.empty()) {
     refuse(call, "nothing to do; it takes " + std::string(call.program->usage));
   }
-  all.end = "restart the robot's drivers, which read this when they start: sudo service robot "
-            "restart";
+  all.end =
+      "restart the robot's drivers, which read this when they start: sudo service robot "
+      "restart";
   return all;
 }
 
@@ -684,6 +696,28 @@ std::string typed(const Words& line) {
   return command.str();
 }
 
+/// Adds what roslaunch has put on the parameter server of ROS 1 for the node that it starts.
+/// @throws InputError  if it cannot be had
+void add_parameter_server(Words& arguments, const std::string& date) {
+  std::string node, space;
+  for (const std::string& word : arguments) {
+    if (word == "--launch" || word == "--ros-args") return;
+    if (word.starts_with("__name:=")) node = word.substr(word.find('=') + 1);
+    if (word.starts_with("__ns:=")) space = word.substr(word.find('=') + 1);
+  }
+  if (node.empty()) return;
+  while (space.ends_with('/')) space.pop_back();
+  const std::string name =
+      (space.starts_with('/') || space.empty() ? space : "/" + space) + "/" + node;
+  const std::string file = "/tmp/" + node + "_" + date + ".yaml";
+  const std::string command = ShellCommand{"rosparam", "dump", file, name}.str();
+  if (std::system((command + " 1>&2").c_str()) != 0) {
+    throw InputError("'" + command + "' fails, so the parameters of node '" + name +
+                     "' are not known; give their files with --launch or --ros-args --params-file");
+  }
+  arguments.insert(arguments.end(), {"--ros-args", "--params-file", file, "--"});
+}
+
 int run_line(const Words& line) {
   Words words = {"kinecal"};
   words.insert(words.end(), line.begin(), line.end());
@@ -704,17 +738,18 @@ int run_line(const Words& line) {
 
 }  // namespace
 
-int run_as_upstream(const std::string& name, const std::vector<std::string>& arguments) {
+int run_as_upstream(const std::string& name, std::vector<std::string> arguments) {
   const auto asks = [](const std::string& word) { return word == "--help" || word == "-h"; };
   if (std::any_of(arguments.begin(), arguments.end(), asks)) {
     print_usage(*program_named(name));
     return kDone;
   }
+  const std::string date = fmt::format("{:%Y_%m_%d_%H_%M_%S}", fmt::localtime(std::time(nullptr)));
   UpstreamCall call;
   try {
+    if (!program_named(name)->parameters.empty()) add_parameter_server(arguments, date);
     call = translated(name, arguments,
-                      {fmt::format("{:%Y_%m_%d_%H_%M_%S}", fmt::localtime(std::time(nullptr))),
-                       environment("ROS_DISTRO"), environment("ROS_VERSION") == "1"});
+                      {date, environment("ROS_DISTRO"), environment("ROS_VERSION") == "1"});
   } catch (const std::exception& e) {
     say(stderr, "error: {}\n", with_hanging_lines(e.what()));
     return kBadInput;

@@ -38,8 +38,9 @@ struct UpstreamPlace {
                                       const std::vector<std::string>& arguments,
                                       const UpstreamPlace& place);
 
-/// Runs the program of this name as upstream's.
+/// Runs the program of this name as upstream's.  If roslaunch has started it, its parameters come from the parameter server,
+/// by rosparam.
 /// @returns  the exit code of the first line that fails, or 0
-int run_as_upstream(const std::string& name, const std::vector<std::string>& arguments);
+int run_as_upstream(const std::string& name, std::vector<std::string> arguments);
 
 }  // namespace kinecal::cli

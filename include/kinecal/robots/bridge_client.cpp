@@ -103,7 +103,7 @@ class BridgeClient::State {
   std::map<std::string, Subscription> subscriptions;  ///< by topic
   std::map<std::uint32_t, std::string> subscribed;    ///< topics, by id of the subscription
   std::map<std::uint32_t, PendingCall> calls;
-  std::map<std::string, std::uint32_t> published;  ///< ids, by topic
+  std::map<std::string, std::uint32_t> published;                ///< ids, by topic
   std::optional<std::map<std::string, std::string>> parameters;  ///< of the last answer
   std::uint32_t last_id = 0;
   std::unique_ptr<WebSocket> socket;

@@ -113,7 +113,8 @@ TEST_F(LaunchNodesTest, NameWhatCannotBeRead) {
   EXPECT_EQ(error_of(with_args("$(find nowhere)/x")),
             "3: $(find nowhere): package 'nowhere' was not found; name the folder above it in "
             "ROS_PACKAGE_PATH");
-  EXPECT_EQ(error_of(with_args("$(eval 1 + 1)")), "3: $(eval 1 + 1) is not read here; write its value");
+  EXPECT_EQ(error_of(with_args("$(eval 1 + 1)")),
+            "3: $(eval 1 + 1) is not read here; write its value");
   EXPECT_EQ(error_of(with_args("$(arg ")), "3: '$(arg' has no ')'");
   EXPECT_EQ(error_of("<launch>\n<node pkg='robot_calibration' type='calibrate' name='c'>\n"
                      "<rosparam>{base_link: a}</rosparam></node></launch>"),
