@@ -85,10 +85,9 @@ class Upstream : public ProgramTest {
 
 TEST_F(Upstream, CalibrateTakesFilesOfParametersAndRemappings) {
   const std::string files = "--params-file capture.yaml --params-file calibrate.yaml";
-  EXPECT_EQ(
-      commands("calibrate --from-bag data.bag --urdf r.urdf --ros-args " + files + " --"),
-      "kinecal calibrate --urdf r.urdf --config calibrate.yaml --samples data.bag --output "
-      "/tmp --upstream-names --verbose\n");
+  EXPECT_EQ(commands("calibrate --from-bag data.bag --urdf r.urdf --ros-args " + files + " --"),
+            "kinecal calibrate --urdf r.urdf --config calibrate.yaml --samples data.bag --output "
+            "/tmp --upstream-names --verbose\n");
   EXPECT_EQ(commands("calibrate --manual --output out --ros-args " + files +
                      " -r joint_states:=/arm/states --log-level debug -p verbose:=false --"),
             "kinecal capture capture.yaml --robot ws://localhost:8765 --joint-states /arm/states "
