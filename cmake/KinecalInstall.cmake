@@ -65,5 +65,3 @@ install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/lintian-overrides RENAME kinec
         DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides COMPONENT program)
 file(GLOB schemas ${PROJECT_SOURCE_DIR}/include/kinecal/*/schema/*.json)
 install(FILES ${schemas} DESTINATION ${CMAKE_INSTALL_DATADIR}/kinecal/schema COMPONENT program)
-install(FILES ${PROJECT_SOURCE_DIR}/package.xml  # ROS reads it to see what is installed
-        DESTINATION ${CMAKE_INSTALL_DATADIR}/kinecal COMPONENT headers)

@@ -2,6 +2,9 @@
 #   kinecal         the program, and nothing that only a compiler needs
 #   libkinecal-dev  libraries, headers, and what you need to build against them
 #   kinecal-opencv  if there is OpenCV: the plug-in for checkerboards, grids of discs, ChArUco boards and markers of ArUco
+#   kinecal-robot-calibration  the programs of robot_calibration as links to kinecal, in a prefix of their own: no file is in
+#                   ros-<distro>-robot-calibration, too, so both may be installed, and the shell chooses (setup.bash).  It does
+#                   not provide that package, which also has messages and headers.
 #   kinecal-mpi     if there is MPI: the plug-in for processes of mpirun
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "kinecal developers")
@@ -46,13 +49,21 @@ set(CPACK_DEBIAN_MPI_DESCRIPTION "one calibration or study in several processes 
 set(CPACK_DEBIAN_OPENCV_PACKAGE_NAME kinecal-opencv)
 set(CPACK_DEBIAN_OPENCV_PACKAGE_DEPENDS "kinecal (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_OPENCV_DESCRIPTION "checkerboards, grids of discs and ChArUco boards in photographs, by OpenCV")
+set(CPACK_DEBIAN_ROBOT_CALIBRATION_PACKAGE_NAME kinecal-robot-calibration)
+set(CPACK_DEBIAN_ROBOT_CALIBRATION_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_ROBOT_CALIBRATION_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_ROBOT_CALIBRATION_PACKAGE_DEPENDS "kinecal (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_ROBOT_CALIBRATION_DESCRIPTION "kinecal in the place of robot_calibration of ROS
+ Links under the names of its programs, in a prefix of their own.")
 include(CPack)
 cpack_add_component_group(kinecal)
 cpack_add_component_group(dev)
 cpack_add_component_group(mpi)
 cpack_add_component_group(opencv)
+cpack_add_component_group(robot_calibration)
 cpack_add_component(program GROUP kinecal)
 cpack_add_component(Unspecified GROUP dev)
 cpack_add_component(headers GROUP dev)
 cpack_add_component(plugin GROUP mpi)
 cpack_add_component(opencv_plugin GROUP opencv)
+cpack_add_component(robot_calibration GROUP robot_calibration)

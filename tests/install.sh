@@ -9,7 +9,7 @@ as_root=""
 [ "$(id -u)" = 0 ] || as_root=sudo
 sudo() { $as_root env DEBIAN_FRONTEND=noninteractive "$@"; }
 work=$(mktemp -d)
-trap 'sudo dpkg --remove kinecal-opencv libkinecal-dev kinecal >/dev/null 2>&1 || true; rm -rf "$work"' EXIT
+trap 'sudo dpkg --remove kinecal-robot-calibration kinecal-opencv libkinecal-dev kinecal >/dev/null 2>&1 || true; rm -rf "$work"' EXIT
 
 dpkg -s libopencv-dev >/dev/null 2>&1 || sudo apt-get install -y -qq libopencv-dev >/dev/null
 echo "== README, Install, $(date +%H:%M:%S)"
@@ -45,6 +45,13 @@ head -n 3 calibrate.txt
 grep -qE '^verdict: (good|use with care)' calibrate.txt
 grep -q '</html>' report.html
 man -w kinecal >/dev/null 2>&1 || [ -e /usr/share/man/man1/kinecal.1 ] || [ -e /usr/share/man/man1/kinecal.1.gz ]
+
+echo "== where ROS looks, $(date +%H:%M:%S)"
+[ -e /usr/share/ament_index/resource_index/packages/kinecal ] && [ -e /usr/share/kinecal/package.xml ]
+/usr/lib/kinecal/kinecal --version >/dev/null
+sudo apt-get install -y -qq "$source"/build/release/kinecal-robot-calibration_*_all.deb >/dev/null
+# shellcheck disable=SC2016  # bash expands it
+[ "$(bash -c '. /usr/lib/kinecal/robot_calibration/setup.bash; "${AMENT_PREFIX_PATH%%:*}"/lib/robot_calibration/to_rpy 0 0 0.25')" = "0, 0, 0.25" ]
 
 echo "== programs of a user's own, $(date +%H:%M:%S)"
 cmake -S "$source/tests/consumer" -B consumer -G Ninja -DCMAKE_BUILD_TYPE=Release >/dev/null

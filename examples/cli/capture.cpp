@@ -215,7 +215,7 @@ NextPose next_pose(const CaptureOptions& options, const CaptureConfig& config,
             fmt::join(places, ", "));
       }
       std::fflush(stdout);
-      if (!std::getline(std::cin, line) || line == "q") return std::nullopt;
+      if (!std::getline(std::cin, line) || is_end(line)) return std::nullopt;
       if (places.empty()) return CapturePose{};
       // "2" is socket_2, if no other ends so.
       const auto is_meant = [&](const std::string& name) {
@@ -283,6 +283,11 @@ void check_options(const CaptureOptions& options) {
     check_sheets(options.sheet, inputs, options.force || is_own);
   }
   if (!options.result.empty()) check_results(calibration_of(options));
+  if (!options.result.empty() && options.urdf.empty() && !output_encoding(options.output)) {
+    throw InputError(
+        "--urdf is required: samples in YAML do not have the URDF, which --result "
+        "needs; or let the name of --output end in .bag or .mcap");
+  }
   check_reports(calibration_of(options));
   if (!(options.velocity > 0.0)) throw InputError("--velocity must be a number from 0.01 to 1");
   if (options.manual == options.poses.empty()) return;
@@ -381,9 +386,9 @@ struct Session {
   /// @returns  why the session ended before; empty if it did not
   [[nodiscard]] std::string run(const CaptureConfig& config) {
     const Interruption interruption;
-    AnyRobot hardware = connect(options.robot, config, robot, velocity_limits(urdf, options.urdf),
-                                options.manual ? MovedBy::person : MovedBy::controllers,
-                                {options.joints, options.depth});
+    AnyRobot hardware = connect(
+        options.robot, config, robot, velocity_limits(urdf, urdf_name(options.urdf)),
+        options.manual ? MovedBy::person : MovedBy::controllers, {options.joints, options.depth});
     std::vector<SessionFinder> finders;
     for (const CaptureFinder& finder : config.finders) {
       finders.push_back(finder_of(finder, robot, hardware));
@@ -432,8 +437,9 @@ int capture(const CaptureOptions& options) {
   const CaptureConfig config = read_capture_config(options.config, diagnostics);
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
-  Session session{options, read_urdf_text(options.urdf), {}, {}, earlier_samples(options), {}};
-  session.robot = parse_urdf(session.urdf, options.urdf);
+  Session session{options, urdf_of(options.urdf, options.robot), {}, {}, earlier_samples(options),
+                  {}};
+  session.robot = parse_urdf(session.urdf, urdf_name(options.urdf));
   session.settling.continuous = continuous_joints(session.robot);
   const std::size_t before = session.samples.size();
   if (before > 0 && !options.sheet.empty()) session.earlier_views = read_sheets(options.sheet);

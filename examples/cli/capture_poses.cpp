@@ -175,14 +175,16 @@ class PoseRecorder {
 
 /// Asks until a person ends it.
 void record_poses(PoseRecorder& recorder) {
-  say("move the robot, then press Enter to record its pose; u removes the last pose, q ends\n"
-      "all poses capture all features; type the names of some for the next poses: {}, or all\n",
-      listed(recorder.known()));
+  say("move the robot, then press Enter to record its pose; u removes the last pose, q ends\n");
+  if (!recorder.known().empty()) {
+    say("all poses capture all features; type the names of some for the next poses: {}, or all\n",
+        listed(recorder.known()));
+  }
   std::fflush(stdout);
   for (std::string line; std::getline(std::cin, line);) {
     line.erase(0, line.find_first_not_of(" \t\r"));
     line.erase(line.find_last_not_of(" \t\r") + 1);
-    if (line == "q") return;
+    if (is_end(line)) return;
     try {
       if (line.empty()) {
         recorder.record();
@@ -204,10 +206,11 @@ int capture_poses(const CapturePosesOptions& options) {
   (void)output_encoding(options.output);
   check_output(options.output, {options.config, options.urdf}, options.force || options.resume);
   Diagnostics diagnostics;
-  CaptureConfig config = read_capture_config(options.config, diagnostics);
+  CaptureConfig config;  // without a file, all joints
+  if (!options.config.empty()) config = read_capture_config(options.config, diagnostics);
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
-  const Robot robot = read_urdf(options.urdf);
+  const Robot robot = parse_urdf(urdf_of(options.urdf, options.robot), urdf_name(options.urdf));
   check_chains(options.config, config, robot);
   std::vector<CapturePose> before;
   if (options.resume && std::filesystem::exists(options.output)) {

@@ -294,7 +294,7 @@ int plan(const PlanOptions& options);
 
 struct CaptureOptions {
   std::string config;       ///< capture.yaml
-  std::string urdf, robot;  ///< file; address
+  std::string urdf, robot;  ///< file, empty: that behind the bridge; address
   std::string joints;       ///< topic of joint states; empty: /joint_states
   std::string depth;        ///< topic of depth images; empty: clouds
   std::string poses;        ///< file
@@ -315,8 +315,8 @@ struct CaptureOptions {
 int capture(const CaptureOptions& options);
 
 struct CapturePosesOptions {
-  std::string config;       ///< capture.yaml
-  std::string urdf, robot;  ///< file; address
+  std::string config;       ///< capture.yaml; empty: all joints, all finders
+  std::string urdf, robot;  ///< file, empty: that behind the bridge; address
   std::string joints;       ///< topic of joint states; empty: /joint_states
   std::string output;       ///< file of poses
   bool resume = false;      ///< go on with the poses of the output
@@ -331,10 +331,11 @@ struct InstallOptions {
   std::string folder;  ///< with the launch file
   std::string launch = "robot.launch";
   std::vector<std::string> names;  ///< KEY=NAME
+  std::string reset = {};          ///< the launch file as the robot was delivered; empty: none
   bool force = false, restore = false, date = false;
 };
 
-/// Installs a result on the robot, restores the previous one, or prints the date of the current one.
+/// Installs a result on the robot, restores the previous one or the factory's, or prints the date of the current one.
 int install(const InstallOptions& options);
 
 struct PlotOptions {
@@ -352,6 +353,7 @@ int plot(const PlotOptions& options);
 struct RpyOptions {
   std::vector<std::string> numbers;  ///< three, radians
   bool to_vector = false;            ///< they are roll, pitch, yaw
+  bool comma = false;                ///< print the result alone: "r, p, y"
 };
 
 /// Prints a rotation as a rotation vector and as roll, pitch, yaw; degrees, too.

@@ -54,6 +54,18 @@ int install_result(const InstallOptions& options) {
   return kDone;
 }
 
+int reset(const InstallOptions& options) {
+  const std::string backup = reset_installed(options.folder, options.launch, options.reset);
+  const std::string launch = in_folder(options, options.launch);
+  if (backup.empty()) {
+    say("{} is unchanged: it is that of {}\n", launch, options.reset);
+  } else {
+    say("{} is that of {}; the previous version is {}, --restore puts it back\n", launch,
+        options.reset, backup);
+  }
+  return kDone;
+}
+
 int restore(const InstallOptions& options) {
   const std::string undone = restore_installed(options.folder, options.launch, options.force);
   say("restored {}; the version that it replaced is {}\n", in_folder(options, options.launch),
@@ -65,8 +77,9 @@ int restore(const InstallOptions& options) {
 
 int install(const InstallOptions& options) {
   if (options.restore) return restore(options);
+  if (!options.reset.empty()) return reset(options);
   if (!options.date && options.result.empty()) {
-    throw InputError("a result is required (or --restore, or --date)");
+    throw InputError("a result is required (or --restore, --reset or --date)");
   }
   if (!options.date) return install_result(options);
   say("{}\n", installed_date(options.folder, options.launch, launch_names(options.names)));

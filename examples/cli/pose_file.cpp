@@ -90,6 +90,11 @@ std::vector<PoseFault> faults_of(const CapturePose& pose, const CaptureConfig& c
 
 }  // namespace
 
+bool is_end(const std::string& line) {
+  const auto is = [&](std::string_view word) { return edit_distance(line, word) == 0; };
+  return line == "q" || is("done") || is("exit");
+}
+
 double within_limits(const Robot& robot, const std::string& joint, double position) {
   if (!robot.has_joint(joint)) return position;
   const auto& limits = robot.joint(joint).limits;

@@ -13,6 +13,9 @@ namespace kinecal::cli {
 /// By which readings of a joint that nobody has moved differ, radians or metres.
 inline constexpr double kSamePosition = 0.005;
 
+/// True for a line that ends a session by hand: q, or robot_calibration's done and exit, in any case.
+[[nodiscard]] bool is_end(const std::string& line);
+
 /// A position to which a joint can be sent: encoders may read a little beyond its limits.
 [[nodiscard]] double within_limits(const Robot& robot, const std::string& joint, double position);
 

@@ -776,7 +776,10 @@ void add_robot(CLI::App& command, Options& options) {
                   "simulated:SCENE")
       ->required()
       ->type_name("ADDRESS");
-  command.add_option("--urdf", options.urdf, "the robot's URDF")->required()->type_name("FILE");
+  command
+      .add_option("--urdf", options.urdf,
+                  "the robot's URDF; default: /robot_description behind the bridge")
+      ->type_name("FILE");
   command
       .add_option("--joint-states", options.joints,
                   "topic of the joint states behind a bridge; default: /joint_states")
@@ -785,6 +788,9 @@ void add_robot(CLI::App& command, Options& options) {
 
 void add_capture_poses(CLI::App& command, CapturePosesOptions& options) {
   add_robot(command, options);
+  command.get_option("config")->required(false)->description(
+      "chains whose joints are recorded and finders: capture.yaml of robot_calibration; default: "
+      "all joints, all finders");
   command
       .add_option("-o,--output", options.output,
                   "the poses, written at each Enter: .yaml, .bag (ROS 1) or .mcap")
@@ -935,9 +941,17 @@ void add_install(CLI::App& command, InstallOptions& installing) {
   CLI::Option* restore =
       command.add_flag("--restore", installing.restore, "put the previous version back")
           ->excludes(result);
-  command.add_flag("--date", installing.date, "print the date of the installed version")
+  CLI::Option* date =
+      command.add_flag("--date", installing.date, "print the date of the installed version")
+          ->excludes(result)
+          ->excludes(restore);
+  command
+      .add_option("--reset", installing.reset,
+                  "put this launch file there, as the robot was delivered; --restore undoes it")
+      ->type_name("FILE")
       ->excludes(result)
-      ->excludes(restore);
+      ->excludes(restore)
+      ->excludes(date);
 }
 
 void add_check(CLI::App& command, InputOptions& options) {
@@ -1031,6 +1045,8 @@ void add_rpy(CLI::App& command, RpyOptions& options) {
       ->required()
       ->expected(3);
   command.add_flag("--to-vector", options.to_vector, "the numbers are roll, pitch, yaw");
+  command.add_flag("--comma", options.comma,
+                   "print the result alone, in radians with commas, as robot_calibration's to_rpy");
 }
 
 void add_describe(CLI::App& command, DescribeOptions& options) {

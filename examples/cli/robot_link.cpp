@@ -11,6 +11,7 @@
 
 #include "input.hpp"
 #include "interruption.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/robots/pipe_robot.hpp"
 #include "kinecal/robots/ros_robot.hpp"
 #include "kinecal/tools/simulation/simulation_plan.hpp"
@@ -105,6 +106,12 @@ AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, cons
 }
 
 }  // namespace
+
+std::string urdf_of(const std::string& urdf, const std::string& address) {
+  if (!urdf.empty()) return read_urdf_text(urdf);
+  if (address.starts_with("ws://")) return robot_description({.url = address});
+  throw InputError("--urdf is required: " + address + " does not have the URDF");
+}
 
 AnyRobot connect(const std::string& address, const CaptureConfig& config, const Robot& robot,
                  const Limits& limits, MovedBy mover, const LinkTopics& topics) {

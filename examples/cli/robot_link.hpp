@@ -23,6 +23,18 @@ struct LinkTopics {
   std::string depth = {};   ///< of depth images; empty: finders of points have clouds
 };
 
+/// The text of the robot's URDF: of a file, or that behind a bridge.
+/// @param urdf     file; empty: none
+/// @param address  of the robot
+/// @throws InputError       if there is no file, and the address is not of a bridge
+/// @throws ConnectionError  if the bridge has none
+[[nodiscard]] std::string urdf_of(const std::string& urdf, const std::string& address);
+
+/// Its name, for messages: the file, or /robot_description.
+[[nodiscard]] inline std::string urdf_name(const std::string& urdf) {
+  return urdf.empty() ? "/robot_description" : urdf;
+}
+
 /// Connects to a robot.
 ///   ws://HOST:PORT    ROS 1 or ROS 2 behind foxglove_bridge
 ///   pipe:COMMAND      a program that speaks JSON lines: examples/pipe_robot

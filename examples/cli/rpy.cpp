@@ -47,8 +47,15 @@ void print(const char* what, const Vector3<double>& v) {
 int rpy(const RpyOptions& options) {
   const Vector3<double> given = three_numbers(options.numbers);
   const Matrix3<double> rotation = options.to_vector ? rotation_from_rpy(given) : exp(given);
-  print("rotation vector", options.to_vector ? Vector3<double>(log(rotation)) : given);
-  print("roll, pitch, yaw", options.to_vector ? given : rpy_from_rotation(rotation));
+  const Vector3<double> vector = options.to_vector ? Vector3<double>(log(rotation)) : given;
+  const Vector3<double> angles = options.to_vector ? given : rpy_from_rotation(rotation);
+  if (options.comma) {
+    const Vector3<double> r = (options.to_vector ? vector : angles) + Vector3<double>::Zero();
+    say("{}, {}, {}\n", r.x(), r.y(), r.z());
+    return kDone;
+  }
+  print("rotation vector", vector);
+  print("roll, pitch, yaw", angles);
   return kDone;
 }
 

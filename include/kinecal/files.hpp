@@ -28,6 +28,7 @@
 #include "kinecal/files/images/read_image.hpp"
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/files/json/json_value.hpp"
+#include "kinecal/files/launch/launch_nodes.hpp"
 #include "kinecal/files/launch/launch_text.hpp"
 #include "kinecal/files/meshes/find_mesh.hpp"
 #include "kinecal/files/meshes/mesh.hpp"

@@ -72,6 +72,21 @@ TEST_F(CapturePoses, RecordsTheJointsOfTheChainsAtEachEnter) {
                                      CapturePose{joints, {-0.25, 1.5}, {}}));
 }
 
+TEST_F(CapturePoses, NeedsNoConfigurationAndEndsAsUpstreams) {
+  write("ends.sh",
+        "for i in 1 2 3 4 5 6; do read line; echo \"{\\\"stamp\\\": ${i}00000000, "
+        "\\\"names\\\": [\\\"head_pan_joint\\\"], \\\"positions\\\": [0.5]}\"; done");
+  const std::string call =
+      kinecal_program() + " capture_poses --robot 'pipe:sh ends.sh' -o poses.yaml";
+  const Outcome done = run("printf '\\nEXIT\\n\\n' | " + call + " --urdf " + source_folder() +
+                           "/examples/mobile_manipulator/mobile_manipulator.urdf");
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(written(), ElementsAre(CapturePose{{"head_pan_joint"}, {0.5}, {}}));
+  const Outcome no_urdf = run(call + " --force < /dev/null");
+  EXPECT_EQ(no_urdf.code, 1);
+  EXPECT_THAT(no_urdf.err, HasSubstr("--urdf is required: pipe:sh ends.sh does not have the URDF"));
+}
+
 TEST_F(CapturePoses, NamesOfFeaturesHoldForTheNextPoses) {
   const Outcome done = poses("0.1,0.2,0.3,0.4", "leds\n\nleds ground\r\n\nall\n\nlesd\n\n");
   EXPECT_EQ(done.code, 0) << done.err;

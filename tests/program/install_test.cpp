@@ -48,6 +48,23 @@ TEST_F(InstallProgram, InstallsRestoresAndPrintsTheDate) {
   expect_refused("--restore --to robot", HasSubstr("nothing to restore"));
 }
 
+TEST_F(InstallProgram, ResetsToTheFactorysAndBack) {
+  write("factory.launch", test::kLaunch);
+  EXPECT_EQ(run("out --to robot").code, 0);
+  const std::string calibrated = launch();
+  const test::Outcome reset = run("--reset factory.launch --to robot");
+  EXPECT_EQ(reset.code, 0) << reset.err;
+  EXPECT_THAT(reset.out, HasSubstr("is that of factory.launch; the previous version is "
+                                   "robot.launch.backup_2, --restore puts it back"));
+  EXPECT_EQ(launch(), test::kLaunch);
+  EXPECT_THAT(run("--reset factory.launch --to robot").out, HasSubstr("is unchanged"));
+  EXPECT_EQ(run("--restore --to robot").code, 0);
+  EXPECT_EQ(launch(), calibrated);
+  write("factory.launch", "<robot/>");
+  expect_refused("--reset factory.launch --to robot", HasSubstr("factory.launch:1: the root"));
+  expect_refused("--reset none.launch --to robot", HasSubstr("none.launch: cannot be read"));
+}
+
 TEST_F(InstallProgram, TheLaunchFileAndItsNamesMayBeOthers) {
   fs::rename(folder_ / "robot/robot.launch", folder_ / "robot/arm.launch");
   spoil("robot/arm.launch", "calibration_date\" value='un", "calibrated_on\" value='un");

@@ -40,6 +40,11 @@ TEST_F(Rpy, PrintsEveryDigitAndDegrees) {
   EXPECT_THAT(result.out, HasSubstr("rotation vector, deg  5.729578 -11.459156 17.188734"));
 }
 
+TEST_F(Rpy, PrintsTheResultAloneForPrograms) {
+  EXPECT_EQ(run("-0.5 0 0 --comma").out, "-0.5, 0, 0\n");
+  EXPECT_EQ(run("--to-vector 0 0 0.25 --comma").out, "0, 0, 0.25\n");
+}
+
 TEST_F(Rpy, ThereAndBackIsTheSameRotation) {
   const Vector3<double> there = after("roll, pitch, yaw, rad", run("-1.2 -.5 -3e-1").out);
   std::ostringstream numbers;

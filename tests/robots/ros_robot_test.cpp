@@ -75,6 +75,24 @@ TEST_P(RosRobotTest, JointsOfSeveralPublishersAreOneState) {
   EXPECT_GT(next.stamp, first.stamp);
 }
 
+TEST_P(RosRobotTest, HasItsUrdfAsATopicOrAParameter) {
+  const auto urdf = [&](milliseconds limit) {
+    BridgeOptions options;
+    options.url = server().url();
+    options.time_limit = limit;
+    return robot_description(options);
+  };
+  constexpr milliseconds kLong(30000), kShort(300);
+  start(R"(, "urdf": "<robot name='topic'/>", "capabilities": ["parameters"])");
+  EXPECT_EQ(urdf(kLong), "<robot name='topic'/>");
+  start(R"(, "urdf_parameter": "<robot name='parameter'/>", "capabilities": ["parameters"])");
+  EXPECT_EQ(urdf(kLong), "<robot name='parameter'/>");
+  start();
+  EXPECT_THAT(error_of([&] { (void)urdf(kShort); }),
+              HasSubstr("it has no URDF: no parameter '/robot_description', and the bridge offers "
+                        "no topic '/robot_description'"));
+}
+
 TEST_P(RosRobotTest, MovesEachControllersJointsAndHoldsTheOthers) {
   RosBridge bridge = connect();
   RosArm arm(bridge, kArm);

@@ -103,7 +103,8 @@ class BridgeClient::State {
   std::map<std::string, Subscription> subscriptions;  ///< by topic
   std::map<std::uint32_t, std::string> subscribed;    ///< topics, by id of the subscription
   std::map<std::uint32_t, PendingCall> calls;
-  std::map<std::string, std::uint32_t> published;  ///< ids, by topic
+  std::map<std::string, std::uint32_t> published;                ///< ids, by topic
+  std::optional<std::map<std::string, std::string>> parameters;  ///< of the last answer
   std::uint32_t last_id = 0;
   std::unique_ptr<WebSocket> socket;
 
@@ -182,6 +183,8 @@ class BridgeClient::State {
       for (const std::uint32_t id : frame.gone) services.erase(id);
     } else if (frame.op == "status" && frame.level >= 2) {
       complaint = frame.message;
+    } else if (frame.op == "parameterValues") {
+      parameters = std::move(frame.parameters);
     } else if (frame.op == "serviceCallFailure") {
       fail_call(frame);
     }
@@ -344,6 +347,21 @@ std::string BridgeClient::why_silent(const std::string& topic) const {
   std::vector<std::string> names;
   for (const auto& [id, channel] : state_->channels) names.push_back(printable(channel.topic));
   return "the bridge offers no topic '" + topic + "'" + did_you_mean(topic, names) + said;
+}
+
+std::optional<std::string> BridgeClient::parameter(const std::string& name, Deadline deadline) {
+  std::unique_lock lock(state_->mutex);
+  const auto& can = state_->capabilities;
+  if (std::find(can.begin(), can.end(), "parameters") == can.end()) return std::nullopt;
+  state_->parameters.reset();
+  state_->socket->send(true, parameter_frame(name));
+  if (!state_->wait(lock, deadline, [&] { return state_->parameters.has_value(); })) {
+    return std::nullopt;
+  }
+  for (const auto& [own, value] : *state_->parameters) {
+    if (plain_topic(own) == plain_topic(name)) return value;
+  }
+  return std::nullopt;
 }
 
 void BridgeClient::publish(const std::string& topic, const PublishedType& type,

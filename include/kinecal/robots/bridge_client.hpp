@@ -79,6 +79,9 @@ class BridgeClient {
   /// '/joint_states'?"
   [[nodiscard]] std::string why_silent(const std::string& topic) const;
 
+  /// A parameter of ROS that is a text; nullopt if the bridge has none of this name, or does not tell in time.
+  [[nodiscard]] std::optional<std::string> parameter(const std::string& name, Deadline deadline);
+
   /// Publishes a ROS 1 message.
   /// @throws ConnectionError  if the bridge does not accept messages from clients
   void publish(const std::string& topic, const PublishedType& type, const MessageFields& message);

@@ -74,6 +74,11 @@ TextFrame parse_text_frame(std::string_view text) {
     } else if (frame.op == "status") {
       frame.level = static_cast<int>(json.number("level"));
       frame.message = printable(json.text("message"));
+    } else if (frame.op == "parameterValues") {
+      for (const JsonValue& parameter : json.list("parameters")) {
+        const auto value = parameter.find("value");
+        if (value && value->is_text()) frame.parameters[parameter.text("name")] = value->as_text();
+      }
     } else if (frame.op == "serviceCallFailure") {
       frame.call = json.id("callId");
       frame.message = printable(json.text_or("message", {}));
@@ -122,6 +127,10 @@ std::string advertise_frame(std::uint32_t id, const std::string& topic,
                   {"schema", schema.definition}};
   if (!schema.definition_kind.empty()) channel["schemaEncoding"] = schema.definition_kind;
   return json_text({{"op", "advertise"}, {"channels", Json::array({channel})}});
+}
+
+std::string parameter_frame(const std::string& name) {
+  return json_text({{"op", "getParameters"}, {"parameterNames", {name}}, {"id", name}});
 }
 
 std::string publish_frame(std::uint32_t id, Bytes message) {

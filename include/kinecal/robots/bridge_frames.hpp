@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -56,6 +57,8 @@ struct TextFrame {
   int level = 0;                          ///< status: 0 information, 1 warning, 2 error
   std::string message;                    ///< status, serviceCallFailure
   std::uint32_t call = 0;                 ///< serviceCallFailure
+  /// parameterValues: those that are texts, by name
+  std::map<std::string, std::string> parameters = {};
 };
 
 /// A binary frame: a message of a topic, or the response of a service.
@@ -80,6 +83,9 @@ struct BinaryFrame {
 /// Announces a topic on which the client publishes.
 [[nodiscard]] std::string advertise_frame(std::uint32_t id, const std::string& topic,
                                           const BridgeSchema& schema);
+
+/// Asks for the value of a parameter of ROS.
+[[nodiscard]] std::string parameter_frame(const std::string& name);
 
 /// A message on such a topic (binary).
 [[nodiscard]] std::string publish_frame(std::uint32_t id, Bytes message);

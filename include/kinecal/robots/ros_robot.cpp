@@ -455,6 +455,17 @@ MeasuredJoints RosArm::next_joints(Stamp after) {
   return robot_->next(after, needed);
 }
 
+std::string robot_description(const BridgeOptions& options) {
+  const std::string name = "/robot_description";
+  detail::BridgeClient bridge(options);
+  if (auto urdf = bridge.parameter(name, bridge.deadline())) return *std::move(urdf);
+  bridge.subscribe(name, {"std_msgs/String"}, 1);
+  const auto messages = bridge.take(name, bridge.deadline());
+  if (!messages.empty()) return std::string(detail::text_at(messages.back().fields(), "data"));
+  throw ConnectionError("bridge '" + options.url + "': it has no URDF: no parameter '" + name +
+                        "', and " + bridge.why_silent(name));
+}
+
 RosCamera::RosCamera(RosBridge& bridge, const RosCameraOptions& options)
     : streams_(std::make_unique<detail::ViewStreams>(bridge.robot(), options)) {}
 RosCamera::RosCamera(RosCamera&&) noexcept = default;

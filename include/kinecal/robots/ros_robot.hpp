@@ -43,6 +43,12 @@ class RosBridge {
   std::unique_ptr<detail::RosRobot> robot_;
 };
 
+/// The URDF behind a bridge: the parameter /robot_description of ROS 1, or what the topic of that name has.
+/// @throws ConnectionError        if there is none in time, or no bridge answers
+/// @throws PoseError              if what comes is not a text
+/// @throws std::invalid_argument  if the address does not have the form ws://host:port
+[[nodiscard]] std::string robot_description(const BridgeOptions& options);
+
 /// A controller that moves joints by control_msgs/FollowJointTrajectory.
 struct JointController {
   std::string action;               ///< "/arm_controller/follow_joint_trajectory"

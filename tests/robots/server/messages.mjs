@@ -10,6 +10,7 @@ const duration = (ros2) => (ros2 ? "builtin_interfaces/Duration" : "duration");
 
 const types = {
   "std_msgs/Header": (r) => `${r ? "" : "uint32 seq\n"}${time(r)} stamp\nstring frame_id`,
+  "std_msgs/String": () => "string data",
   "builtin_interfaces/Time": () => "int32 sec\nuint32 nanosec",
   "builtin_interfaces/Duration": () => "int32 sec\nuint32 nanosec",
   "unique_identifier_msgs/UUID": () => "uint8[16] uuid",

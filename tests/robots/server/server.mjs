@@ -1,7 +1,7 @@
 // A Foxglove bridge with a simulated robot behind it, for tests; by the protocol's reference server.
 //   node server.mjs '{"encoding": "ros1" | "cdr", "protocol": "foxglove.sdk.v1", "joint_type": ...,
 //                     "rate": 5 (of the robot's clock), "die_after": 0.5 (seconds after a goal: see "goals"),
-//                     "remote": true, "camera": "/head_camera"}'
+//                     "remote": true, "camera": "/head_camera", "urdf": TEXT (of a topic), "urdf_parameter": TEXT}'
 // It prints {"port": ...} and then takes faults from its standard input, one a line: see `faults`; if it
 // is remote, see remote.mjs.
 // SPDX-License-Identifier: Apache-2.0
@@ -70,6 +70,17 @@ const compressedImage = topic(`${camera}/image/compressed`, "sensor_msgs/Compres
 const depth = topic(`${camera}/depth`, "sensor_msgs/Image");
 const compressedDepth = topic(`${camera}/depth/compressedDepth`, "sensor_msgs/CompressedImage");
 const info = topic(`${camera}/camera_info`, "sensor_msgs/CameraInfo");
+
+// The URDF, for whoever subscribes; or the parameter.
+if (options.urdf !== undefined) {
+  const description = topic("/robot_description", "std_msgs/String");
+  server.on("subscribe", () => description({ data: options.urdf }));
+}
+server.on("getParameters", ({ id }, connection) => {
+  const value = options.urdf_parameter;
+  const found = value === undefined ? [] : [{ name: "/robot_description", value }];
+  server.publishParameterValues(found, id, connection);
+});
 
 function stream() {
   const now = seconds();

@@ -136,6 +136,13 @@ MeshPlaces mesh_places(const std::filesystem::path& urdf, const std::vector<std:
           .prefixes = detail::folders_of_variable("AMENT_PREFIX_PATH")};
 }
 
+std::filesystem::path find_package(const std::string& package, const MeshPlaces& places) {
+  const std::vector<detail::fs::path> folders = detail::package_folders(package, places);
+  if (!folders.empty()) return folders.front();
+  throw MeshError("package '" + printable(package) +
+                  "' was not found; name the folder above it in ROS_PACKAGE_PATH");
+}
+
 std::filesystem::path find_mesh(const std::string& name, const MeshPlaces& places) {
   constexpr std::string_view kPackage = "package://", kFile = "file://";
   const std::string plain = detail::decoded(name);

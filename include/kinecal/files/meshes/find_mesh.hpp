@@ -32,6 +32,11 @@ struct MeshPlaces {
 [[nodiscard]] MeshPlaces mesh_places(const std::filesystem::path& urdf,
                                      const std::vector<std::string>& given = {});
 
+/// The folder of a package: $(find fetch_description) of launch files.
+/// @throws MeshError  if it is not in any of the folders
+[[nodiscard]] std::filesystem::path find_package(const std::string& package,
+                                                 const MeshPlaces& places);
+
 /// The file of a mesh.
 /// @param name  package://..., file://..., or relative to the URDF
 /// @throws MeshError  if it is missing or outside its package

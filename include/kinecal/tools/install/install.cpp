@@ -237,6 +237,15 @@ std::string restore_installed(const std::filesystem::path& folder, const std::st
   return target.restore();
 }
 
+std::string reset_installed(const std::filesystem::path& folder, const std::string& launch,
+                            const std::filesystem::path& factory) {
+  const detail::LaunchText text(detail::read_text_file(factory), factory.string());
+  detail::LaunchFolder target(folder, launch);
+  target.remove_leftovers();
+  if (detail::read_text_file(target.launch()) == text.text()) return {};
+  return target.replace_launch({}, text.text());
+}
+
 std::string installed_date(const std::filesystem::path& folder, const std::string& launch,
                            const LaunchNames& names) {
   const detail::LaunchFolder target(folder, launch);

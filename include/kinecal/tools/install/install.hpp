@@ -40,6 +40,14 @@ Installation install(const ResultFolder& result, const std::filesystem::path& fo
 std::string restore_installed(const std::filesystem::path& folder, const std::string& launch,
                               bool force = false);
 
+/// Puts another launch file in the place of the robot's: that with which it was delivered.
+/// @param factory  the file
+/// @return         new name of the replaced launch file, which restore_installed() puts back; empty: they are the same
+/// @throws InputError   if the file is not a launch file
+/// @throws OutputError  if something cannot be written; the folder is then unchanged
+std::string reset_installed(const std::filesystem::path& folder, const std::string& launch,
+                            const std::filesystem::path& factory);
+
 /// The date of the installed calibration, from the launch file.
 /// @throws InputError  if it is not there
 [[nodiscard]] std::string installed_date(const std::filesystem::path& folder,
