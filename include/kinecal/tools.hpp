@@ -39,3 +39,5 @@
 #include "kinecal/tools/simulation/pose_samples.hpp"
 #include "kinecal/tools/simulation/simulation_plan.hpp"
 #include "kinecal/tools/simulation/touched_samples.hpp"
+#include "kinecal/tools/watch/fleet.hpp"
+#include "kinecal/tools/watch/history.hpp"
