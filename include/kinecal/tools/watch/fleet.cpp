@@ -60,16 +60,11 @@ void find_robots(const fs::path& folder, const std::string& name, const WatchedF
 
 void add_file(const fs::path& file, RecordingFiles& to) {
   std::error_code error;
-  const auto written = fs::last_write_time(file, error);
-  if (error) return;  // it was removed just now
   const auto size = fs::file_size(file, error);
-  if (error) return;
+  if (error) return;  // it was removed just now
   to.files.push_back(file.string());
   to.seen.size += static_cast<std::int64_t>(size);
-  to.seen.modified = std::max(
-      to.seen.modified,
-      nanoseconds(std::chrono::time_point_cast<std::chrono::system_clock::duration>(
-          std::chrono::file_clock::to_sys(written))));
+  to.seen.modified = std::max(to.seen.modified, file_time(file.string()));
   for (const char* end : {"-wal", "-journal"}) {
     if (fs::exists(file.string() + end, error)) to.is_open = true;
   }
@@ -165,6 +160,14 @@ bool is_settled(const RecordingFiles& recording, std::int64_t now, double second
   return !recording.is_open && (age >= seconds || age < -seconds);  // the latter of another clock
 }
 
+std::int64_t file_time(const std::string& file) {
+  std::error_code error;
+  const auto written = std::filesystem::last_write_time(file, error);
+  if (error) return 0;
+  return detail::nanoseconds(
+      std::chrono::time_point_cast<std::chrono::system_clock::duration>(std::chrono::file_clock::to_sys(written)));
+}
+
 std::int64_t file_time_now() { return detail::nanoseconds(std::chrono::system_clock::now()); }
 
 std::string structure_checksum(const Robot& robot) {
@@ -242,18 +245,18 @@ std::vector<double> change_now(const RobotFinding& finding) {
 RobotDecision decide(const RobotFinding& finding, const WatchLimits& limits) {
   RobotDecision decision;
   if (finding.usable == 0) return decision;
-  decision.state = RobotState::holds;
+  decision.state = FleetState::holds;
   const std::vector<double> change = change_now(finding);
   if (limits.size && !change.empty()) decision.change = limits.size->of(change);
   const bool matters = !decision.change || *decision.change > limits.limit;
   if (finding.drift) {
-    decision.state = RobotState::drifts;
+    decision.state = FleetState::drifts;
     if (limits.size) decision.passes = passes(finding.drift->line, *limits.size, limits.limit);
     if (decision.passes && decision.passes->time <= limits.now + limits.ahead) {
-      decision.state = RobotState::recalibrate;
+      decision.state = FleetState::recalibrate;
     }
   }
-  if (finding.has_moved && matters) decision.state = RobotState::recalibrate;
+  if (finding.has_moved && matters) decision.state = FleetState::recalibrate;
   return decision;
 }
 

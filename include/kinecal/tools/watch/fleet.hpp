@@ -38,7 +38,7 @@ struct WatchedRobot {
 /// A recording as files.
 struct RecordingFiles {
   std::string path;                ///< of the file, or of the folder of a ROS 2 bag
-  std::vector<std::string> files;  ///< all of them
+  std::vector<std::string> files;  ///< all of them, in natural order
   WatchedRecording seen;           ///< name, size and when it was last written
   bool is_open = false;            ///< another program has a file beside it that it writes to
 };
@@ -51,8 +51,12 @@ struct RecordingFiles {
 /// @param now  nanoseconds, as `modified`
 [[nodiscard]] bool is_settled(const RecordingFiles& recording, std::int64_t now, double seconds);
 
-/// The time now, as WatchedRecording::modified has it: nanoseconds since 1970.
+/// The time now, and when a file was last written, as WatchedRecording::modified has it: nanoseconds since 1970; 0 if it
+/// does not exist.
+/// @{
 [[nodiscard]] std::int64_t file_time_now();
+[[nodiscard]] std::int64_t file_time(const std::string& file);
+/// @}
 
 /// Checksum of links and joints: the same after a calibration, another one of another robot.
 [[nodiscard]] std::string structure_checksum(const Robot& robot);
@@ -90,7 +94,7 @@ struct RobotFinding {
                                                     double level = 0.01);
 
 /// What is to be done with a robot.
-enum class RobotState { not_known, holds, drifts, recalibrate };
+enum class FleetState { not_known, holds, drifts, recalibrate };
 
 /// When a change matters.
 struct WatchLimits {
@@ -102,7 +106,7 @@ struct WatchLimits {
 
 /// The state of a robot, and why.
 struct RobotDecision {
-  RobotState state = RobotState::not_known;
+  FleetState state = FleetState::not_known;
   std::optional<double> change = {};  ///< size of the change in the last recording
   std::optional<When> passes = {};    ///< when a drift passes the limit
 };
