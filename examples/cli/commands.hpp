@@ -219,7 +219,7 @@ struct WatchOptions {
   std::optional<Recorded> recorded;     ///< before or after the result was installed
   std::vector<std::string> mesh_paths;  ///< where the URDF's packages may be
   std::string report;                   ///< a page or JSON is written there
-  double limit = 0.0;                   ///< metres; 0: three times the +- of the result
+  double limit = 0.0;                   ///< millimetres; 0: three times the +- of the result
   double ahead = 7.0;                   ///< days
   double level = 0.01;                  ///< share of false alarms
   double settle = 10.0;                 ///< seconds after which a file is no longer written to

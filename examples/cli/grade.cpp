@@ -264,6 +264,9 @@ Json json_of(const Episode& episode) {
 }  // namespace
 
 int grade(const GradeOptions& options) {
+  if (options.result.empty() && options.urdf.empty()) {
+    throw InputError("grade needs --result, or --urdf and --config");
+  }
   std::vector<Episode> episodes = episodes_of(options);
   if (!options.report.empty()) check_json(options.report, options.episodes);
   for (Episode& episode : episodes) read(options, episode);

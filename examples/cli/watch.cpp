@@ -256,7 +256,7 @@ class Watch {
       const WatchedChange* mover = of.finding.drift ? &of.finding.drift->of : of.finding.moved;
       if (result.pose) {
         of.what = fmt::format("'{}' in '{}'", result.pose->frame.name(), result.pose->in.name());
-        of.limit = options_.limit > 0.0 ? options_.limit : 3.0 * result.pose->position;
+        of.limit = options_.limit > 0.0 ? 1e-3 * options_.limit : 3.0 * result.pose->position;
       }
       if (mover != nullptr) {
         of.mover = mover_name(*mover, result.robot.has_joint(mover->owner));
