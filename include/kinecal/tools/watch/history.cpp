@@ -23,7 +23,6 @@ namespace {
 constexpr std::int64_t kApplication = 0x6B63616C;
 /// Of the tables below.
 constexpr std::int64_t kVersion = 1;
-constexpr int kWait = 10'000;  ///< for another watcher, milliseconds
 
 constexpr const char* kTables = R"(
 CREATE TABLE robot(id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, structure TEXT NOT NULL);
@@ -63,14 +62,14 @@ CREATE TABLE seen(robot INTEGER NOT NULL REFERENCES robot, name TEXT NOT NULL, s
 /// The database of a history.
 class HistoryFile {
  public:
-  explicit HistoryFile(std::string path) : path_(std::move(path)) {
+  HistoryFile(std::string path, double wait) : path_(std::move(path)) {
     sqlite3* made = nullptr;
     const int code = sqlite3_open_v2(path_.c_str(), &made,
                                      SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
     handle_.reset(made);
     check(code);
     sqlite3_extended_result_codes(made, 1);
-    sqlite3_busy_timeout(made, kWait);
+    sqlite3_busy_timeout(made, static_cast<int>(1e3 * wait));
     sqlite3_db_config(made, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(made, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
     run("PRAGMA foreign_keys = ON");
@@ -167,8 +166,7 @@ class HistoryFile {
     switch (code & 0xFF) {
       case SQLITE_BUSY:
       case SQLITE_LOCKED:
-        throw InputError(path_ + ": another 'kinecal watch' has been writing to it for " +
-                         std::to_string(kWait / 1000) + " seconds; nothing was added, try again");
+        throw InputError(path_ + ": another 'kinecal watch' is writing to it; nothing was added, try again");
       case SQLITE_FULL:
       case SQLITE_IOERR:
         throw InputError(path_ + ": cannot be written: " + text +
@@ -234,7 +232,8 @@ void add_changes(const HistoryFile& file, std::int64_t recording,
 }  // namespace
 }  // namespace detail
 
-History::History(const std::string& file) : file_(std::make_unique<detail::HistoryFile>(file)) {}
+History::History(const std::string& file, double wait)
+    : file_(std::make_unique<detail::HistoryFile>(file, wait)) {}
 History::~History() = default;
 
 std::int64_t History::epoch(const std::string& robot, const std::string& structure,
@@ -348,7 +347,7 @@ namespace detail {
 class HistoryFile {};
 }  // namespace detail
 
-History::History(const std::string& file) {
+History::History(const std::string& file, double) {
   throw InputError(file + ": a history is an SQLite file, and this kinecal was built without libsqlite3; install "
                           "libsqlite3-dev and build again");
 }

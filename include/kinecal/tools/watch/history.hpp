@@ -64,9 +64,10 @@ class HistoryFile;
 class History {
  public:
   /// Opens the file; creates it if it is missing.
+  /// @param wait  for another watcher that writes to it, seconds
   /// @throws InputError  if it is something else, of a newer version, or cannot be written; if kinecal was built without
   ///                     SQLite
-  explicit History(const std::string& file);
+  explicit History(const std::string& file, double wait = 10.0);
   History(const History&) = delete;
   History& operator=(const History&) = delete;
   ~History();
@@ -93,7 +94,7 @@ class History {
 
   /// Adds recordings: all, or none with an error.  Of a content that the robot has already, only the file is remembered; a
   /// file that was refused and has changed replaces the one that was refused.
-  /// @throws InputError  if the disk is full, or another watcher keeps the file for longer than ten seconds
+  /// @throws InputError  if the disk is full, or another watcher writes to the file for too long
   void add(std::int64_t epoch, std::span<const WatchedRecording> recordings);
 
   /// The recordings of an epoch, by time.
