@@ -212,9 +212,9 @@ int evaluate(const RecheckOptions& options);
 int verify(const RecheckOptions& options);
 
 struct WatchOptions {
-  std::string tree;                   ///< folder
-  std::string history;                ///< file; empty: history.sqlite in the tree
-  std::string result = "result";      ///< folders of a robot
+  std::string tree;               ///< folder
+  std::string history;            ///< file; empty: history.sqlite in the tree
+  std::string result = "result";  ///< folders of a robot
   std::string recordings = "recordings";
   std::optional<Recorded> recorded;     ///< before or after the result was installed
   std::vector<std::string> mesh_paths;  ///< where the URDF's packages may be
@@ -232,14 +232,14 @@ struct WatchOptions {
 int watch(const WatchOptions& options);
 
 struct GradeOptions {
-  std::vector<std::string> episodes;    ///< files, or folders of them
-  std::string result;                   ///< folder that calibrate wrote; empty: the episodes are calibrated
-  std::string urdf, config;             ///< files, without a result
+  std::vector<std::string> episodes;  ///< files, or folders of them
+  std::string result;        ///< folder that calibrate wrote; empty: the episodes are calibrated
+  std::string urdf, config;  ///< files, without a result
   std::vector<std::string> cameras;     ///< NAME=FILE
   std::optional<Recorded> recorded;     ///< before or after the result was installed
   std::vector<std::string> mesh_paths;  ///< where the URDF's packages may be
   std::string report;                   ///< JSON is written there
-  double level = 0.01;                  ///< probability of naming any episode of a consistent data set
+  double level = 0.01;  ///< probability of naming any episode of a consistent data set
   Manner manner = {};
 };
 

@@ -33,8 +33,9 @@ struct Episode {
   bool is_consistent = true;
   std::string reason;  ///< what cannot be said by a mover
   double probability = 1.0, statistic = 0.0, freedom = 0.0;
-  std::vector<NamedChange> moved;    ///< what explains it, the most likely first; empty: nothing alone
-  std::vector<std::string> movers;   ///< "joint 'elbow'": of each
+  std::vector<NamedChange>
+      moved;  ///< what explains it, the most likely first; empty: nothing alone
+  std::vector<std::string> movers;  ///< "joint 'elbow'": of each
 };
 
 std::string name_of(const NamedChange& of, const Robot& robot) {
@@ -47,13 +48,19 @@ std::vector<Episode> episodes_of(const GradeOptions& options) {
   for (const std::string& given : options.episodes) {
     const bool is_bag = std::filesystem::exists(std::filesystem::path(given) / "metadata.yaml");
     if (!std::filesystem::is_directory(given) || is_bag) {
-      all.push_back({.name = given, .samples = {}, .refused = {}, .reason = {}, .moved = {}, .movers = {}});
+      all.push_back(
+          {.name = given, .samples = {}, .refused = {}, .reason = {}, .moved = {}, .movers = {}});
       continue;
     }
     const std::vector<RecordingFiles> found = recordings_in(given);
     if (found.empty()) throw InputError(given + ": has no recordings");
     for (const RecordingFiles& files : found) {
-      all.push_back({.name = files.path, .samples = {}, .refused = {}, .reason = {}, .moved = {}, .movers = {}});
+      all.push_back({.name = files.path,
+                     .samples = {},
+                     .refused = {},
+                     .reason = {},
+                     .moved = {},
+                     .movers = {}});
     }
   }
   return all;
@@ -63,7 +70,8 @@ void read(const GradeOptions& options, Episode& episode) {
   try {
     Diagnostics diagnostics;
     episode.samples = read_new_recordings(
-        {{episode.name}, options.cameras, options.recorded, options.level, options.mesh_paths}, diagnostics);
+        {{episode.name}, options.cameras, options.recorded, options.level, options.mesh_paths},
+        diagnostics);
     if (!diagnostics.errors.empty()) episode.refused = diagnostics.errors.front();
   } catch (const std::exception& error) {
     episode.refused = error.what();
@@ -71,7 +79,8 @@ void read(const GradeOptions& options, Episode& episode) {
 }
 
 /// Holds an episode against a result.
-void judge(const StoredResult& result, const GradeOptions& options, double level, Episode& episode) {
+void judge(const StoredResult& result, const GradeOptions& options, double level,
+           Episode& episode) {
   episode.moved.clear();
   episode.movers.clear();
   try {
@@ -127,7 +136,8 @@ StoredResult result_of(const CalibratedRobot& calibrated) {
   }
   for (const Combination& combination : state.undetermined) {
     auto& of = result.undetermined.emplace_back();
-    for (const auto& [parameter, factor] : combination) of.emplace_back(table[parameter].name, factor);
+    for (const auto& [parameter, factor] : combination)
+      of.emplace_back(table[parameter].name, factor);
   }
   result.noise = state.noise;
   result.common = state.common;
@@ -146,7 +156,9 @@ class HeldOut {
     input_ = read_files(input, false);
     print_or_throw(input_.diagnostics);
     if (compares_surface(*input_.setup.config)) {
-      throw InputError(options.config + ": compares the robot's own surface; calibrate, and give the result with --result");
+      throw InputError(
+          options.config +
+          ": compares the robot's own surface; calibrate, and give the result with --result");
     }
     for (std::size_t i = 0; i < episodes.size(); ++i) {
       if (episodes[i].refused.empty()) used_.push_back(i);
@@ -161,10 +173,11 @@ class HeldOut {
     std::vector<std::size_t> out;
     while (true) {
       if (2 * used_.size() <= readable_ || used_.size() < 2) {
-        throw InputError(fmt::format(
-            "{} of {} do not agree with the others: no majority of the episodes is consistent; calibrate with samples "
-            "that you trust, and give the result with --result",
-            out.size(), counted(readable_, "episode")));
+        throw InputError(
+            fmt::format("{} of {} do not agree with the others: no majority of the episodes is "
+                        "consistent; calibrate with samples "
+                        "that you trust, and give the result with --result",
+                        out.size(), counted(readable_, "episode")));
       }
       const std::size_t worst = judge_held_out(level);
       if (episodes_[worst].is_consistent) break;
@@ -211,9 +224,10 @@ class HeldOut {
     if (!prepared.diagnostics.errors.empty()) throw InputError(prepared.diagnostics.errors.front());
     const CalibratedRobot solved = detail::solve_and_judge(std::move(prepared), calibrating);
     if (!solved.is_usable() || solved.assessments.empty()) {
-      throw InputError("the episodes cannot be calibrated together: " +
-                       (solved.judgement.reasons.empty() ? "do not use" : solved.judgement.reasons.front()) +
-                       "; give a result with --result");
+      throw InputError(
+          "the episodes cannot be calibrated together: " +
+          (solved.judgement.reasons.empty() ? "do not use" : solved.judgement.reasons.front()) +
+          "; give a result with --result");
     }
     return result_of(solved);
   }
@@ -226,7 +240,8 @@ class HeldOut {
 };
 
 std::string line_of(const Episode& episode) {
-  if (!episode.refused.empty()) return fmt::format("{}: refused: {}\n", episode.name, episode.refused);
+  if (!episode.refused.empty())
+    return fmt::format("{}: refused: {}\n", episode.name, episode.refused);
   if (episode.is_consistent) {
     return fmt::format("{}: consistent (p = {:.2g})\n", episode.name, episode.probability);
   }
@@ -275,7 +290,9 @@ int grade(const GradeOptions& options) {
   } else {
     const StoredResult result = read_result(options.result);
     if (compares_surface(result.config)) {
-      throw InputError(options.result + ": is a result of the robot's own surface: hold episodes against it with 'kinecal verify'");
+      throw InputError(options.result +
+                       ": is a result of the robot's own surface: hold episodes against it with "
+                       "'kinecal verify'");
     }
     const double level = options.level / static_cast<double>(episodes.size());
     for (Episode& episode : episodes) {
@@ -292,7 +309,9 @@ int grade(const GradeOptions& options) {
     text += line_of(episode);
     all.push_back(json_of(episode));
   }
-  const Json json = {{"episodes", all}, {"consistent", episodes.size() - wrong - refused}, {"not_consistent", wrong},
+  const Json json = {{"episodes", all},
+                     {"consistent", episodes.size() - wrong - refused},
+                     {"not_consistent", wrong},
                      {"refused", refused}};
   if (options.manner.json) {
     say("{}", detail::json_lines(json));

@@ -996,11 +996,11 @@ void add_watch(CLI::App& command, WatchOptions& options) {
       ->type_name("DIR");
   command.add_flag("--once", options.once,
                    "look once: exit code 2 if a robot has to be calibrated again");
-  command
-      .add_option("--interval", options.interval, "seconds between looks, without --once")
+  command.add_option("--interval", options.interval, "seconds between looks, without --once")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str();
-  command.add_option("--history", options.history, "file of the history, default: DIR/history.sqlite")
+  command
+      .add_option("--history", options.history, "file of the history, default: DIR/history.sqlite")
       ->type_name("FILE");
   command
       .add_option("--result", options.result,
@@ -1013,9 +1013,10 @@ void add_watch(CLI::App& command, WatchOptions& options) {
       ->capture_default_str()
       ->type_name("NAME");
   command
-      .add_option("--limit", options.limit,
-                  "change of the gripper's pose that matters, in mm, or with a unit: 0.5mm; default: "
-                  "three times the +- of the result")
+      .add_option(
+          "--limit", options.limit,
+          "change of the gripper's pose that matters, in mm, or with a unit: 0.5mm; default: "
+          "three times the +- of the result")
       ->transform(CLI::AsNumberWithUnit(
           std::map<std::string, double>{{"mm", 1.0}, {"cm", 10.0}, {"m", 1000.0}, {"in", 25.4}},
           CLI::AsNumberWithUnit::CASE_SENSITIVE, "LENGTH"))
@@ -1245,13 +1246,14 @@ void add_commands(Commands& commands, const kinecal::ShellCommand& line) {
   commands.add<RecheckOptions>(
       "verify", "decide by a few new samples whether a result still holds, and what has moved",
       add_verify, verify);
-  commands.add<WatchOptions>(
-      "watch",
-      "verify the recordings of many robots as they appear: which of them drift, and when they have "
-      "to be calibrated again",
-      add_watch, watch);
+  commands.add<WatchOptions>("watch",
+                             "verify the recordings of many robots as they appear: which of them "
+                             "drift, and when they have "
+                             "to be calibrated again",
+                             add_watch, watch);
   commands.add<GradeOptions>(
-      "grade", "find the episodes of a data set in which the camera or a zero is not as in the others",
+      "grade",
+      "find the episodes of a data set in which the camera or a zero is not as in the others",
       add_grade, grade);
   commands.add<CompareOptions>("compare",
                                "list what differs between two results by more than its uncertainty",

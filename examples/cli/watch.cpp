@@ -61,7 +61,8 @@ void verify(const StoredResult& result, const RecordingFiles& files, const Watch
             double not_before, WatchedRecording& recording) {
   recording.time = kNano * static_cast<double>(recording.modified);
   try {
-    const NewSampleOptions of_new{{files.path}, {}, options.recorded, options.level, options.mesh_paths};
+    const NewSampleOptions of_new{
+        {files.path}, {}, options.recorded, options.level, options.mesh_paths};
     Diagnostics diagnostics;
     std::vector<Sample> samples = read_new_recordings(of_new, diagnostics);
     recording.time = time_of(samples, recording);
@@ -72,7 +73,9 @@ void verify(const StoredResult& result, const RecordingFiles& files, const Watch
         hold_against(result, std::move(samples), of_new, std::move(diagnostics));
     const std::vector<std::string>& errors = fresh.diagnostics.errors;
     if (!errors.empty()) {
-      return refuse(recording, errors.front() + (errors.size() > 1 ? fmt::format(" (and {} more)", errors.size() - 1) : ""));
+      return refuse(recording, errors.front() + (errors.size() > 1 ? fmt::format(" (and {} more)",
+                                                                                 errors.size() - 1)
+                                                                   : ""));
     }
     recording.samples = static_cast<int>(fresh.samples.size());
     if (!std::isfinite(fresh.misfit)) {
@@ -144,13 +147,15 @@ class Watch {
  public:
   explicit Watch(const WatchOptions& options)
       : options_(options),
-        history_(options.history.empty() ? (std::filesystem::path(options.tree) / "history.sqlite").string()
-                                         : options.history) {}
+        history_(options.history.empty()
+                     ? (std::filesystem::path(options.tree) / "history.sqlite").string()
+                     : options.history) {}
 
   /// Looks at all recordings that are new, and judges all robots.
   [[nodiscard]] const std::vector<SeenRobot>& look() {
     seen_.clear();
-    for (const WatchedRobot& robot : robots_in(options_.tree, {options_.result, options_.recordings})) {
+    for (const WatchedRobot& robot :
+         robots_in(options_.tree, {options_.result, options_.recordings})) {
       SeenRobot& of = seen_.emplace_back();
       of.name = robot.name;
       try {
@@ -186,7 +191,9 @@ class Watch {
     known = {};
     known.result = read_result(robot.result);
     if (compares_surface(known.result.config)) {
-      throw InputError(robot.result + ": is a result of the robot's own surface: verify its recordings with 'kinecal verify'");
+      throw InputError(
+          robot.result +
+          ": is a result of the robot's own surface: verify its recordings with 'kinecal verify'");
     }
     known.epoch = history_.epoch(robot.name, structure_checksum(known.result.robot), checksum);
     known.written = kNano * static_cast<double>(file_time(file));
@@ -235,7 +242,8 @@ class Watch {
     }
     const auto same = history_.with_content(recording.checksum);
     if (same && same->robot != robot.name) {
-      return refuse(recording, fmt::format("is the same file as '{}' of robot '{}'", same->name, same->robot));
+      return refuse(recording,
+                    fmt::format("is the same file as '{}' of robot '{}'", same->name, same->robot));
     }
     if (same) return;  // a copy, or touched
     verify(in_force.result, files, options_, not_before, recording);
@@ -289,7 +297,8 @@ std::string text_of(const std::vector<SeenRobot>& robots) {
 }
 
 /// Prints and writes what was found.
-void write(const WatchOptions& options, const std::vector<SeenRobot>& robots, const std::string& text) {
+void write(const WatchOptions& options, const std::vector<SeenRobot>& robots,
+           const std::string& text) {
   if (options.manner.json) {
     const detail::Json json = watch_json(robots);
     say("{}\n", options.once ? detail::json_lines(json) : detail::json_text(json));
@@ -298,9 +307,8 @@ void write(const WatchOptions& options, const std::vector<SeenRobot>& robots, co
   }
   std::fflush(stdout);
   if (options.report.empty()) return;
-  write_output(options.report, is_page(options.report)
-                                   ? watch_page(options.tree, robots)
-                                   : detail::json_lines(watch_json(robots)));
+  write_output(options.report, is_page(options.report) ? watch_page(options.tree, robots)
+                                                       : detail::json_lines(watch_json(robots)));
 }
 
 }  // namespace
@@ -317,7 +325,8 @@ int watch(const WatchOptions& options) {
       if (text != before) write(options, seen, text);
       before = text;
       if (options.once) return exit_code(seen);
-      const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(options.interval);
+      const auto until =
+          std::chrono::steady_clock::now() + std::chrono::duration<double>(options.interval);
       while (std::chrono::steady_clock::now() < until) {
         if (Interruption::is_asked()) return kInterrupted;
         std::this_thread::sleep_for(std::chrono::milliseconds(50));

@@ -26,17 +26,22 @@ constexpr double kDay = 86'400.0, kWeek = 7.0 * kDay;
 const char* state_text(const SeenRobot& robot) {
   if (!robot.fault.empty()) return "cannot be checked";
   switch (robot.decision.state) {
-    case FleetState::not_known: return "not known";
-    case FleetState::holds: return "holds";
-    case FleetState::drifts: return "drifts";
-    case FleetState::recalibrate: return "recalibrate";
+    case FleetState::not_known:
+      return "not known";
+    case FleetState::holds:
+      return "holds";
+    case FleetState::drifts:
+      return "drifts";
+    case FleetState::recalibrate:
+      return "recalibrate";
   }
   return "";
 }
 
 /// The drift in a week.
 NamedChange weekly(const FoundDrift& drift) {
-  NamedChange change{drift.of.owner, drift.of.is_frame, drift.of.parameters, drift.of.units, {}, {}};
+  NamedChange change{
+      drift.of.owner, drift.of.is_frame, drift.of.parameters, drift.of.units, {}, {}};
   for (std::size_t i = 0; i < drift.line.slope.size(); ++i) {
     change.change.push_back(kWeek * drift.line.slope[i]);
     change.deviation.push_back(kWeek * drift.line.slope_deviation(i));
@@ -72,9 +77,10 @@ std::string why(const SeenRobot& robot) {
   if (!robot.fault.empty()) return robot.fault;
   const RobotFinding& of = robot.finding;
   if (of.usable == 0) {
-    return of.refused == 0 ? "no recording yet"
-                           : "all of " + counted(static_cast<std::size_t>(of.refused), "recording") +
-                                 " refused: " + robot.history.recordings.back().reason;
+    return of.refused == 0
+               ? "no recording yet"
+               : "all of " + counted(static_cast<std::size_t>(of.refused), "recording") +
+                     " refused: " + robot.history.recordings.back().reason;
   }
   const std::string on = day_text(of.last->time);
   std::string text;
@@ -88,8 +94,11 @@ std::string why(const SeenRobot& robot) {
     text = fmt::format("{} has moved by {} (p = {:.1g} among all robots, {})", robot.mover,
                        change_text(moved_by(*of.moved)), of.probability, on);
   } else if (of.has_moved) {
-    text = fmt::format("{}{} does not fit, and nothing that moved alone explains it (p = {:.1g} among all robots, {})",
-                       "'" + of.last->name + "'", of.last->reason.empty() ? "" : ": " + of.last->reason, of.probability, on);
+    text = fmt::format(
+        "{}{} does not fit, and nothing that moved alone explains it (p = {:.1g} among all robots, "
+        "{})",
+        "'" + of.last->name + "'", of.last->reason.empty() ? "" : ": " + of.last->reason,
+        of.probability, on);
   } else {
     text = fmt::format("{}, the last on {} (p = {:.2g})",
                        counted(static_cast<std::size_t>(of.usable), "recording"), on,
@@ -104,9 +113,9 @@ std::string why(const SeenRobot& robot) {
 /// Why the recordings that were refused were.
 std::string refused_text(const SeenRobot& robot) {
   if (!robot.fault.empty() || robot.finding.usable == 0 || robot.finding.refused == 0) return "";
-  const auto last = std::find_if(
-      robot.history.recordings.rbegin(), robot.history.recordings.rend(),
-      [](const WatchedRecording& of) { return of.state == RecordingState::refused; });
+  const auto last =
+      std::find_if(robot.history.recordings.rbegin(), robot.history.recordings.rend(),
+                   [](const WatchedRecording& of) { return of.state == RecordingState::refused; });
   return fmt::format("; {} refused, the last '{}': {}",
                      counted(static_cast<std::size_t>(robot.finding.refused), "recording"),
                      last->name, last->reason);
@@ -177,7 +186,12 @@ const WatchedChange* change_in(const WatchedRecording& recording, const WatchedC
 
 /// The parameter that drifts or has moved, over time; of other robots, how well the result fits.
 Chart chart_of(const SeenRobot& robot, std::size_t number) {
-  DriftSeries series{.name = fmt::format("watch-{}", number), .title = robot.name, .caption = {}, .what = {}, .unit = {}, .points = {}};
+  DriftSeries series{.name = fmt::format("watch-{}", number),
+                     .title = robot.name,
+                     .caption = {},
+                     .what = {},
+                     .unit = {},
+                     .points = {}};
   const RobotFinding& of = robot.finding;
   const WatchedChange* mover = of.drift ? &of.drift->of : of.moved;
   if (mover == nullptr) {
@@ -185,8 +199,8 @@ Chart chart_of(const SeenRobot& robot, std::size_t number) {
     series.expected = 1.0;
     for (const WatchedRecording& recording : robot.history.recordings) {
       if (recording.state == RecordingState::refused || !(recording.freedom > 0.0)) continue;
-      series.points.push_back({recording.time, std::sqrt(recording.statistic / recording.freedom), 0.0,
-                               recording.state == RecordingState::holds});
+      series.points.push_back({recording.time, std::sqrt(recording.statistic / recording.freedom),
+                               0.0, recording.state == RecordingState::holds});
     }
     return drift_chart(series);
   }
@@ -232,9 +246,9 @@ std::string day_text(double time) {
 }
 
 std::string line_of(const SeenRobot& robot) {
-  return fmt::format("{}: {}: {}{}{}\n", robot.name, state_text(robot), why(robot),
-                     refused_text(robot),
-                     robot.written > 0 ? fmt::format("; {} still being written", robot.written) : "");
+  return fmt::format(
+      "{}: {}: {}{}{}\n", robot.name, state_text(robot), why(robot), refused_text(robot),
+      robot.written > 0 ? fmt::format("; {} still being written", robot.written) : "");
 }
 
 std::string summary_of(const std::vector<SeenRobot>& robots) {
@@ -273,8 +287,10 @@ std::string watch_page(const std::string& tree, const std::vector<SeenRobot>& ro
   const std::string body = fmt::format(
       "<header class=\"verdict {}\">\n<h1>{}: <strong>{}</strong></h1>\n</header>\n<main>\n"
       "<section id=\"robots\"><h2>Robots</h2>\n{}</section>\n"
-      "<section id=\"drift\"><h2>Over time</h2>\n<p>A change is that of the joint, frame or sensor that drifts or has "
-      "moved, with one standard deviation. Of the other robots, residuals by what noise and the uncertainty of the result "
+      "<section id=\"drift\"><h2>Over time</h2>\n<p>A change is that of the joint, frame or sensor "
+      "that drifts or has "
+      "moved, with one standard deviation. Of the other robots, residuals by what noise and the "
+      "uncertainty of the result "
       "make.</p>\n<div class=\"pair\">{}</div>\n</section>\n</main>\n",
       is_good ? "good" : "care", detail::html_name(tree), detail::html_text(title),
       detail::html_table(rows, "ttnnl"), figures);

@@ -12,15 +12,15 @@ namespace kinecal::cli {
 
 /// A robot after a look at its recordings.
 struct SeenRobot {
-  std::string name;          ///< in the tree
-  std::string fault;         ///< why it cannot be checked; empty: it can
-  RobotHistory history;      ///< with the result in force
-  RobotFinding finding;      ///< points into `history`
-  RobotDecision decision;    ///< what is to be done
-  std::string what;          ///< the pose that matters: "'tool' in 'tracker_frame'"; empty: not known
-  double limit = 0.0;        ///< of its change, metres
-  std::string mover;         ///< "joint 'elbow'": what drifts or has moved; empty: nothing alone
-  int written = 0;           ///< recordings that are still being written
+  std::string name;        ///< in the tree
+  std::string fault;       ///< why it cannot be checked; empty: it can
+  RobotHistory history;    ///< with the result in force
+  RobotFinding finding;    ///< points into `history`
+  RobotDecision decision;  ///< what is to be done
+  std::string what;        ///< the pose that matters: "'tool' in 'tracker_frame'"; empty: not known
+  double limit = 0.0;      ///< of its change, metres
+  std::string mover;       ///< "joint 'elbow'": what drifts or has moved; empty: nothing alone
+  int written = 0;         ///< recordings that are still being written
 };
 
 /// "joint 'elbow'", "frame 'tracker'" or "'head_camera'".

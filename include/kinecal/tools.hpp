@@ -1,4 +1,4 @@
-// Umbrella header of tools/: what the program offers beside calibrations: init, detect, install, simulation.
+// Umbrella header of tools/: what the program offers beside calibrations: init, detect, install, simulation, watch.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -48,7 +48,9 @@ class Watched : public test::ProgramTest {
   /// A robot with its result.
   void add_robot(const std::string& name, unsigned seed) const {
     write_as("s.yaml", samples(40, seed));
-    const Outcome done = kinecal("calibrate --urdf arm.urdf --config c.yaml --samples s.yaml --force --output " + name + "/result");
+    const Outcome done =
+        kinecal("calibrate --urdf arm.urdf --config c.yaml --samples s.yaml --force --output " +
+                name + "/result");
     ASSERT_EQ(done.code, 0) << done.out << done.err;
   }
   /// The recording of a night, that many days ago.
@@ -85,16 +87,18 @@ TEST_F(Watched, NamesTheOneRobotThatDriftsAndNoOther) {
   std::printf("%d robots, %d recordings: %.1f s\n%s", robots, robots * nights, seconds.count(),
               found.out.c_str());
   EXPECT_EQ(found.code, 2) << found.out << found.err;
-  EXPECT_THAT(found.out, AllOf(HasSubstr("arm_1: recalibrate: joint 'elbow' drifts by 0.0"),
-                               HasSubstr("deg a week +- "), HasSubstr("'tool' in 'tracker_frame' is off by "),
-                               HasSubstr("limit 0.3 mm")));
+  EXPECT_THAT(found.out,
+              AllOf(HasSubstr("arm_1: recalibrate: joint 'elbow' drifts by 0.0"),
+                    HasSubstr("deg a week +- "), HasSubstr("'tool' in 'tracker_frame' is off by "),
+                    HasSubstr("limit 0.3 mm")));
   EXPECT_THAT(found.out, HasSubstr(std::to_string(robots - 1) + " of " + std::to_string(robots) +
                                    " robots hold; recalibrate arm_1\n"));
   EXPECT_THAT(read("fleet.html"), HasSubstr("change since the calibration"));
 
   const auto again = std::chrono::steady_clock::now();  // nothing is verified again
   EXPECT_EQ(watch("--json --report fleet.json --limit 0.3mm").code, 2);
-  std::printf("again: %.1f s\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - again).count());
+  std::printf("again: %.1f s\n",
+              std::chrono::duration<double>(std::chrono::steady_clock::now() - again).count());
   const YAML::Node report = json("fleet.json")["robots"][1];
   EXPECT_EQ(report["state"].as<std::string>(), "recalibrate");
   EXPECT_EQ(report["recordings"].as<int>(), nights);
@@ -109,7 +113,8 @@ TEST_F(Watched, ReadsOnlyWhatIsNewAndWhole) {
   EXPECT_THAT(watch().out, HasSubstr("arm: not known: no recording yet"));
   add_night("fleet/arm", 3, 1);
   add_night("fleet/arm", 2, 2);
-  write("fleet/arm/recordings/night_99.yaml", read("fleet/arm/recordings/night_98.yaml").substr(0, 900));
+  write("fleet/arm/recordings/night_99.yaml",
+        read("fleet/arm/recordings/night_98.yaml").substr(0, 900));
   const Outcome cut = watch();
   EXPECT_EQ(cut.code, 1) << "the newest is refused: " << cut.out;
   EXPECT_THAT(cut.out, HasSubstr("arm: holds: 2 recordings, the last on "));
@@ -119,15 +124,19 @@ TEST_F(Watched, ReadsOnlyWhatIsNewAndWhole) {
   EXPECT_EQ(whole.code, 0) << whole.out << whole.err;
   EXPECT_THAT(whole.out, AllOf(HasSubstr("arm: holds: 3 recordings"), Not(HasSubstr("refused"))));
   add_night("fleet/arm", 0, 4);
-  EXPECT_THAT(kinecal("watch fleet --once --settle 1000").out, HasSubstr("3 recordings, the last on"));
-  EXPECT_THAT(kinecal("watch fleet --once --settle 1000").out, HasSubstr("; 1 still being written"));
+  EXPECT_THAT(kinecal("watch fleet --once --settle 1000").out,
+              HasSubstr("3 recordings, the last on"));
+  EXPECT_THAT(kinecal("watch fleet --once --settle 1000").out,
+              HasSubstr("; 1 still being written"));
   fs::remove_all(folder_ / "fleet/arm/recordings");
   EXPECT_THAT(watch().out, HasSubstr("arm: holds: 3 recordings")) << "the history has them";
 
-  write("fleet/history.sqlite", "something else, which is certainly not a data base of SQLite, but long enough");
+  write("fleet/history.sqlite",
+        "something else, which is certainly not a data base of SQLite, but long enough");
   const Outcome other = watch();
   EXPECT_EQ(other.code, 1);
-  EXPECT_THAT(other.err, HasSubstr("error: fleet/history.sqlite: is not a history of 'kinecal watch'"));
+  EXPECT_THAT(other.err,
+              HasSubstr("error: fleet/history.sqlite: is not a history of 'kinecal watch'"));
 }
 
 TEST_F(Watched, SaysWhatMovedUntilTheRobotIsCalibratedAgain) {
@@ -144,7 +153,10 @@ TEST_F(Watched, SaysWhatMovedUntilTheRobotIsCalibratedAgain) {
   std::vector<Sample> since = samples(40, 77);
   slip(since, "elbow", 0.004);
   write_as("s.yaml", since);
-  ASSERT_EQ(kinecal("calibrate --urdf arm.urdf --config c.yaml --samples s.yaml --force --output fleet/arm/result").code, 0);
+  ASSERT_EQ(kinecal("calibrate --urdf arm.urdf --config c.yaml --samples s.yaml --force --output "
+                    "fleet/arm/result")
+                .code,
+            0);
   add_night("fleet/arm", 3, 3);
   EXPECT_THAT(watch().out, HasSubstr("was recorded before the result in force"));
   add_night("fleet/arm", -1, 4, 0.004);
@@ -166,7 +178,8 @@ TEST_F(Watched, GradesEpisodes) {
   }
   const Outcome alone = kinecal("grade episodes --urdf arm.urdf --config c.yaml --report g.json");
   EXPECT_EQ(alone.code, 2) << alone.out << alone.err;
-  EXPECT_THAT(alone.out, AllOf(HasSubstr("e3.yaml: consistent"), HasSubstr("e4.yaml: not consistent: joint 'flex' by 0.5"),
+  EXPECT_THAT(alone.out, AllOf(HasSubstr("e3.yaml: consistent"),
+                               HasSubstr("e4.yaml: not consistent: joint 'flex' by 0.5"),
                                HasSubstr("e5.yaml: not consistent: frame 'tracker_frame' by "),
                                HasSubstr("5 of 7 episodes consistent\n")));
   EXPECT_EQ(json("g.json")["not_consistent"].as<int>(), 2);

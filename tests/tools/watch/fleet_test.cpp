@@ -28,8 +28,9 @@ class FleetFolder : public test::FolderTest {
 };
 
 TEST_F(FleetFolder, HasRobotsAtAnyDepth) {
-  for (const char* name : {"line_2/arm_10/result/report.json", "line_2/arm_9/result/report.json",
-                           "line_1/result/recordings/no_robot", "new/recordings/a.yaml", ".hidden/result/x"}) {
+  for (const char* name :
+       {"line_2/arm_10/result/report.json", "line_2/arm_9/result/report.json",
+        "line_1/result/recordings/no_robot", "new/recordings/a.yaml", ".hidden/result/x"}) {
     file(name);
   }
   std::vector<std::string> names;
@@ -38,16 +39,18 @@ TEST_F(FleetFolder, HasRobotsAtAnyDepth) {
   const auto alone = robots_in((folder_ / "line_2" / "arm_9").string() + "/");
   ASSERT_EQ(alone.size(), 1u);
   EXPECT_EQ(alone[0].name, "arm_9");
-  EXPECT_THAT(test::thrown<InputError>([&] { (void)robots_in(folder_.string(), {"calibrated", "bags"}); }),
+  EXPECT_THAT(test::thrown<InputError>([&] {
+                (void)robots_in(folder_.string(), {"calibrated", "bags"});
+              }),
               HasSubstr("no folder in it has a folder 'calibrated'"));
   EXPECT_THAT(test::thrown<InputError>([&] { (void)robots_in((folder_ / "none").string()); }),
               HasSubstr("does not exist"));
 }
 
 TEST_F(FleetFolder, HasRecordingsButNotWhatIsBesideThem) {
-  for (const char* name : {"r/a_2.yaml", "r/a_10.yaml", "r/.b.yaml", "r/c.bag.active", "r/d.part", "r/columns.yaml",
-                           "r/e/metadata.yaml", "r/e/e_0.db3", "r/night/f.mcap", "r/night/g.db3",
-                           "r/night/g.db3-journal", "r/calibrated/report.json"}) {
+  for (const char* name : {"r/a_2.yaml", "r/a_10.yaml", "r/.b.yaml", "r/c.bag.active", "r/d.part",
+                           "r/columns.yaml", "r/e/metadata.yaml", "r/e/e_0.db3", "r/night/f.mcap",
+                           "r/night/g.db3", "r/night/g.db3-journal", "r/calibrated/report.json"}) {
     file(name);
   }
   const std::vector<RecordingFiles> found = recordings_in((folder_ / "r").string());
@@ -85,11 +88,19 @@ std::vector<RobotHistory> fleet(int robots, int nights, int drifting, unsigned s
       recording.time = 1.7e9 + kDay * night;
       recording.state = RecordingState::holds;
       const double drift = robot == drifting ? 0.05 * kDegree * night / 7.0 : 0.0;
-      const double off = drift + kNoise * normal(random), other = 0.3 * drift + kNoise * normal(random);
+      const double off = drift + kNoise * normal(random),
+                   other = 0.3 * drift + kNoise * normal(random);
       const double left = std::pow(0.5 * drift / kNoise, 2);  // what the wrong one does not explain
       recording.probability = std::uniform_real_distribution<double>(0.01, 1.0)(random);
       recording.changes = {
-          {"wrist", false, {"wrist"}, {"rad"}, {other}, {kNoise * kNoise}, 30.0 + left, left < 20.0},
+          {"wrist",
+           false,
+           {"wrist"},
+           {"rad"},
+           {other},
+           {kNoise * kNoise},
+           30.0 + left,
+           left < 20.0},
           {"elbow", false, {"elbow"}, {"rad"}, {off}, {kNoise * kNoise}, 30.0, true}};
       if (off * off > 16.0 * kNoise * kNoise) {
         recording.state = RecordingState::does_not_hold;
@@ -111,7 +122,8 @@ TEST(Fleet, FindsTheOneOfFiftyRobotsThatDriftsAndNoOther) {
   }
   const FoundDrift& drift = *found[17].drift;
   EXPECT_EQ(drift.of.owner, "elbow");
-  EXPECT_NEAR(kWeek * drift.line.slope[0], 0.05 * kDegree, 4.0 * kWeek * drift.line.slope_deviation(0));
+  EXPECT_NEAR(kWeek * drift.line.slope[0], 0.05 * kDegree,
+              4.0 * kWeek * drift.line.slope_deviation(0));
   ASSERT_NE(found[17].moved, nullptr);
   EXPECT_EQ(found[17].moved->owner, "elbow");
 }
@@ -120,10 +132,12 @@ TEST(Fleet, SaysWhenTheLimitIsReached) {
   const std::vector<RobotHistory> robots = fleet(5, 28, 1, 2);
   const std::vector<RobotFinding> found = judge_fleet(robots);
   ASSERT_TRUE(found[1].drift);
-  WatchLimits limits{.size = ChangeSize{{0.25}}, .limit = 4e-3, .now = 1.7e9 + 28.0 * kDay, .ahead = 7.0 * kDay};
+  WatchLimits limits{
+      .size = ChangeSize{{0.25}}, .limit = 4e-3, .now = 1.7e9 + 28.0 * kDay, .ahead = 7.0 * kDay};
   const RobotDecision later = decide(found[1], limits);  // 8e-3 rad: nine weeks, in about five
   ASSERT_TRUE(later.passes);
-  EXPECT_NEAR(later.passes->time, 1.7e9 + 8e-3 / (0.05 * kDegree) * kWeek, 4.0 * later.passes->deviation);
+  EXPECT_NEAR(later.passes->time, 1.7e9 + 8e-3 / (0.05 * kDegree) * kWeek,
+              4.0 * later.passes->deviation);
   EXPECT_LT(later.passes->deviation, 3.0 * kWeek);
   EXPECT_EQ(later.state, FleetState::drifts) << "what has moved so far does not matter";
   limits.ahead = 100.0 * kDay;

@@ -23,14 +23,25 @@ class HistoryTest : public test::FolderTest {
   const std::string file_ = (folder_ / "history.sqlite").string();
 
   [[nodiscard]] static WatchedRecording recording(const std::string& name, double time) {
-    WatchedRecording of{.name = name, .checksum = "sum of " + name, .size = 7, .modified = 11, .time = time,
+    WatchedRecording of{.name = name,
+                        .checksum = "sum of " + name,
+                        .size = 7,
+                        .modified = 11,
+                        .time = time,
                         .state = RecordingState::holds};
     of.samples = 6;
     of.statistic = 30.5;
     of.freedom = 36.0;
     of.probability = 0.7;
     of.changes = {{"elbow", false, {"elbow"}, {"rad"}, {1e-3}, {4e-8}, 32.5, true},
-                  {"flange", true, {"flange_x", "flange_a"}, {"m", "rad"}, {1e-4, 2e-4}, {1, 2, 3, 4}, 31.0, false}};
+                  {"flange",
+                   true,
+                   {"flange_x", "flange_a"},
+                   {"m", "rad"},
+                   {1e-4, 2e-4},
+                   {1, 2, 3, 4},
+                   31.0,
+                   false}};
     return of;
   }
   void execute(const char* sql) const {
@@ -70,13 +81,15 @@ TEST_F(HistoryTest, KeepsRecordingsByEpoch) {
   EXPECT_NE(later, epoch);
   EXPECT_TRUE(history.follows_another(later));
   EXPECT_TRUE(history.recordings(later).empty());
-  EXPECT_TRUE(history.knows(later, recording("a", 0.0))) << "it was looked at with the earlier result";
+  EXPECT_TRUE(history.knows(later, recording("a", 0.0)))
+      << "it was looked at with the earlier result";
   EXPECT_EQ(history.epoch("arm", "structure", "result 1"), epoch) << "which was restored";
 }
 
 TEST_F(HistoryTest, CountsAContentOnce) {
   History history(file_);
-  const std::int64_t epoch = history.epoch("arm", "s", "r"), other = history.epoch("other", "s", "r");
+  const std::int64_t epoch = history.epoch("arm", "s", "r"),
+                     other = history.epoch("other", "s", "r");
   history.add(epoch, std::vector{recording("a", 10.0)});
   WatchedRecording copy = recording("a", 10.0);
   copy.name = "copy";
@@ -94,7 +107,8 @@ TEST_F(HistoryTest, CountsAContentOnce) {
 TEST_F(HistoryTest, ReplacesARefusedFileThatChanged) {
   History history(file_);
   const std::int64_t epoch = history.epoch("arm", "s", "r");
-  WatchedRecording bad{.name = "a", .checksum = "cut off", .size = 3, .modified = 1, .reason = "is cut off"};
+  WatchedRecording bad{
+      .name = "a", .checksum = "cut off", .size = 3, .modified = 1, .reason = "is cut off"};
   history.add(epoch, std::vector{bad});
   ASSERT_EQ(history.recordings(epoch).size(), 1u);
   EXPECT_EQ(history.recordings(epoch)[0].reason, "is cut off");
@@ -113,11 +127,14 @@ TEST_F(HistoryTest, IsNotThatOfAnotherRobot) {
 }
 
 TEST_F(HistoryTest, RefusesWhatIsNoHistory) {
-  write("history.sqlite", "not a database at all, but long enough to be read as the header of one, which it is not");
-  EXPECT_THAT(test::thrown<InputError>([&] { History history(file_); }), HasSubstr("is not a history of 'kinecal watch'"));
+  write("history.sqlite",
+        "not a database at all, but long enough to be read as the header of one, which it is not");
+  EXPECT_THAT(test::thrown<InputError>([&] { History history(file_); }),
+              HasSubstr("is not a history of 'kinecal watch'"));
   std::filesystem::remove(file_);
   execute("CREATE TABLE messages(id INTEGER)");
-  EXPECT_THAT(test::thrown<InputError>([&] { History history(file_); }), HasSubstr("is not a history of 'kinecal watch'"));
+  EXPECT_THAT(test::thrown<InputError>([&] { History history(file_); }),
+              HasSubstr("is not a history of 'kinecal watch'"));
   std::filesystem::remove(file_);
   { const History made(file_); }
   execute("PRAGMA user_version = 2");
@@ -136,8 +153,9 @@ TEST_F(HistoryTest, OfTwoWatchersTheSecondWaitsAndSaysSo) {
   sqlite3* writing = nullptr;
   ASSERT_EQ(sqlite3_open(file_.c_str(), &writing), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(writing, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr), SQLITE_OK);
-  EXPECT_THAT(test::thrown<InputError>([&] { second.add(epoch, std::vector{recording("c", 3.0)}); }),
-              HasSubstr("another 'kinecal watch' is writing to it"));
+  EXPECT_THAT(
+      test::thrown<InputError>([&] { second.add(epoch, std::vector{recording("c", 3.0)}); }),
+      HasSubstr("another 'kinecal watch' is writing to it"));
   sqlite3_close(writing);
   second.add(epoch, std::vector{recording("c", 3.0)});
   EXPECT_EQ(second.recordings(epoch).size(), 3u);

@@ -14,10 +14,10 @@ constexpr double kDay = 86'400.0, kWeek = 7.0 * kDay, kDegree = 0.01745329251994
 /// Nightly changes of one parameter, with noise of a recording and an error of the calibration that all share.
 struct Nights {
   int count = 100;
-  double slope = 0.0;        ///< radians a week
-  double noise = 5e-4;       ///< radians, of a recording
-  double calibration = 2e-4; ///< radians, shared
-  double memory = 0.0;       ///< correlation of the noise of consecutive nights
+  double slope = 0.0;         ///< radians a week
+  double noise = 5e-4;        ///< radians, of a recording
+  double calibration = 2e-4;  ///< radians, shared
+  double memory = 0.0;        ///< correlation of the noise of consecutive nights
 
   [[nodiscard]] std::vector<TimedChange> draw(std::mt19937& random) const {
     std::normal_distribution<double> normal;
@@ -65,7 +65,8 @@ TEST(DriftOverTime, FindsTheOneOfFiftyRobotsThatDriftsAndNoOther) {
         const Nights nights{.slope = drifts ? 0.05 * kDegree : 0.0};
         std::vector<TimedChange> changes = nights.draw(random);
         for (TimedChange& of : changes) {  // others leave the drift in X
-          const double left = kDay * static_cast<double>(&of - changes.data()) / kWeek * 0.05 * kDegree / nights.noise;
+          const double left = kDay * static_cast<double>(&of - changes.data()) / kWeek * 0.05 *
+                              kDegree / nights.noise;
           if (robot == 17 && !drifts && fleet > 0) of.score += left * left;
         }
         lines.push_back({robot, mover, *drift_line(changes)});
@@ -105,7 +106,11 @@ TEST(DriftOverTime, FindsAFrameThatSlidesAlongWhatRecordingsDetermine) {
 }
 
 TEST(DriftOverTime, SaysWhenALimitIsPassed) {
-  DriftLine line{.origin = 0.0, .last = 10.0, .recordings = 9, .level = {1e-3}, .slope = {1e-4},
+  DriftLine line{.origin = 0.0,
+                 .last = 10.0,
+                 .recordings = 9,
+                 .level = {1e-3},
+                 .slope = {1e-4},
                  .covariance = {1e-10, 0, 0, 1e-12}};
   const ChangeSize size{{0.25}};  // half a metre
   EXPECT_DOUBLE_EQ(size.of(std::vector<double>{2e-3}), 1e-3);

@@ -61,10 +61,12 @@ Chart drift_chart(const DriftSeries& series) {
     };
     drawing.line(place(0.0), place(end), "after thick");
   }
-  std::string description = fmt::format("{} recordings in {:.1f} weeks; the last: {}.", series.points.size(), end,
-                                        detail::with_unit(series.points.back().value, series.unit));
+  std::string description =
+      fmt::format("{} recordings in {:.1f} weeks; the last: {}.", series.points.size(), end,
+                  detail::with_unit(series.points.back().value, series.unit));
   if (series.line) {
-    description += fmt::format(" Drift: {} a week.", detail::with_unit(kWeek * series.line->slope, series.unit));
+    description += fmt::format(" Drift: {} a week.",
+                               detail::with_unit(kWeek * series.line->slope, series.unit));
   }
   chart.svg = drawing.str(description);
   return chart;

@@ -111,9 +111,8 @@ struct MoverOverTime {
   for (const WatchedRecording& recording : robot.recordings) {
     if (!is_usable(recording)) continue;
     for (const WatchedChange& change : recording.changes) {
-      auto known = std::find_if(movers.begin(), movers.end(), [&](const MoverOverTime& mover) {
-        return mover.of.is_of(change);
-      });
+      auto known = std::find_if(movers.begin(), movers.end(),
+                                [&](const MoverOverTime& mover) { return mover.of.is_of(change); });
       if (known == movers.end()) {
         known = movers.insert(known, {{.owner = change.owner,
                                        .is_frame = change.is_frame,
@@ -132,7 +131,8 @@ struct MoverOverTime {
 
 std::vector<WatchedRobot> robots_in(const std::string& tree, const WatchedFolders& folders) {
   if (!std::filesystem::is_directory(tree)) {
-    throw InputError(tree + (std::filesystem::exists(tree) ? ": is not a folder" : ": does not exist"));
+    throw InputError(tree +
+                     (std::filesystem::exists(tree) ? ": is not a folder" : ": does not exist"));
   }
   std::vector<WatchedRobot> robots;
   detail::find_robots(tree, "", folders, robots);
@@ -164,11 +164,13 @@ std::int64_t file_time(const std::string& file) {
   std::error_code error;
   const auto written = std::filesystem::last_write_time(file, error);
   if (error) return 0;
-  return detail::nanoseconds(
-      std::chrono::time_point_cast<std::chrono::system_clock::duration>(std::chrono::file_clock::to_sys(written)));
+  return detail::nanoseconds(std::chrono::time_point_cast<std::chrono::system_clock::duration>(
+      std::chrono::file_clock::to_sys(written)));
 }
 
-std::int64_t file_time_now() { return detail::nanoseconds(std::chrono::system_clock::now()); }
+std::int64_t file_time_now() {
+  return detail::nanoseconds(std::chrono::system_clock::now());
+}
 
 std::string structure_checksum(const Robot& robot) {
   std::vector<std::string> lines;
@@ -219,8 +221,8 @@ std::vector<RobotFinding> judge_fleet(std::span<const RobotHistory> robots, doub
     const auto line = std::find_if(lines.begin(), lines.end(), [&](const MoverLine& of) {
       return of.robot == drifting.robot && of.mover == drifting.mover;
     });
-    FoundDrift found{own[static_cast<std::size_t>(drifting.mover)].of, {}, line->line,
-                     drifting.probability};
+    FoundDrift found{
+        own[static_cast<std::size_t>(drifting.mover)].of, {}, line->line, drifting.probability};
     for (const int other : drifting.alike) {
       found.alike.push_back(own[static_cast<std::size_t>(other)].of.owner);
     }

@@ -26,7 +26,7 @@ struct WatchedFolders {
 
 /// A robot in a tree of folders.
 struct WatchedRobot {
-  std::string name;                ///< its path in the tree: "line_1/arm_3"; of the tree itself, its name
+  std::string name;  ///< its path in the tree: "line_1/arm_3"; of the tree itself, its name
   std::string result, recordings;  ///< paths
 };
 
@@ -77,9 +77,9 @@ struct FoundDrift {
 
 /// What the recordings of a robot say.
 struct RobotFinding {
-  int usable = 0;                ///< recordings that were verified
-  int refused = 0;               ///< and that were not
-  bool is_last_refused = false;  ///< the newest one is among them
+  int usable = 0;                          ///< recordings that were verified
+  int refused = 0;                         ///< and that were not
+  bool is_last_refused = false;            ///< the newest one is among them
   const WatchedRecording* last = nullptr;  ///< the newest usable one; none: nullptr
   bool has_moved = false;                  ///< it does not hold, and that is no chance
   double probability = 1.0;                ///< of that, in any recording of any robot, by chance

@@ -64,8 +64,9 @@ class HistoryFile {
  public:
   HistoryFile(std::string path, double wait) : path_(std::move(path)) {
     sqlite3* made = nullptr;
-    const int code = sqlite3_open_v2(path_.c_str(), &made,
-                                     SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
+    const int code =
+        sqlite3_open_v2(path_.c_str(), &made,
+                        SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
     handle_.reset(made);
     check(code);
     sqlite3_extended_result_codes(made, 1);
@@ -99,7 +100,8 @@ class HistoryFile {
   class Query {
    public:
     template <class... Values>
-    explicit Query(const HistoryFile& file, const char* sql, const Values&... values) : file_(file) {
+    explicit Query(const HistoryFile& file, const char* sql, const Values&... values)
+        : file_(file) {
       sqlite3_stmt* made = nullptr;
       const int code = sqlite3_prepare_v2(file.handle_.get(), sql, -1, &made, nullptr);
       handle_.reset(made);
@@ -116,11 +118,16 @@ class HistoryFile {
       while (next()) {
       }
     }
-    [[nodiscard]] std::int64_t integer(int column) const { return sqlite3_column_int64(handle_.get(), column); }
-    [[nodiscard]] double number(int column) const { return sqlite3_column_double(handle_.get(), column); }
+    [[nodiscard]] std::int64_t integer(int column) const {
+      return sqlite3_column_int64(handle_.get(), column);
+    }
+    [[nodiscard]] double number(int column) const {
+      return sqlite3_column_double(handle_.get(), column);
+    }
     [[nodiscard]] std::string text(int column) const {
       const auto* data = static_cast<const char*>(sqlite3_column_blob(handle_.get(), column));
-      return data ? std::string(data, static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column)))
+      return data ? std::string(
+                        data, static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column)))
                   : std::string();
     }
     [[nodiscard]] std::vector<double> numbers(int column) const {
@@ -135,13 +142,17 @@ class HistoryFile {
       void operator()(sqlite3_stmt* handle) const { sqlite3_finalize(handle); }
     };
     void bind(const std::string& text) {
-      file_.check(sqlite3_bind_text(handle_.get(), ++bound_, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT));
+      file_.check(sqlite3_bind_text(handle_.get(), ++bound_, text.data(),
+                                    static_cast<int>(text.size()), SQLITE_TRANSIENT));
     }
-    void bind(std::int64_t value) { file_.check(sqlite3_bind_int64(handle_.get(), ++bound_, value)); }
+    void bind(std::int64_t value) {
+      file_.check(sqlite3_bind_int64(handle_.get(), ++bound_, value));
+    }
     void bind(double value) { file_.check(sqlite3_bind_double(handle_.get(), ++bound_, value)); }
     void bind(const std::vector<double>& values) {
       file_.check(sqlite3_bind_blob(handle_.get(), ++bound_, values.data(),
-                                    static_cast<int>(values.size() * sizeof(double)), SQLITE_TRANSIENT));
+                                    static_cast<int>(values.size() * sizeof(double)),
+                                    SQLITE_TRANSIENT));
     }
 
     const HistoryFile& file_;
@@ -166,20 +177,25 @@ class HistoryFile {
     switch (code & 0xFF) {
       case SQLITE_BUSY:
       case SQLITE_LOCKED:
-        throw InputError(path_ + ": another 'kinecal watch' is writing to it; nothing was added, try again");
+        throw InputError(
+            path_ + ": another 'kinecal watch' is writing to it; nothing was added, try again");
       case SQLITE_FULL:
       case SQLITE_IOERR:
         throw InputError(path_ + ": cannot be written: " + text +
-                         "; is the disk full?  What was found last is not in the history, which is as it was before");
+                         "; is the disk full?  What was found last is not in the history, which is "
+                         "as it was before");
       case SQLITE_READONLY:
       case SQLITE_CANTOPEN:
       case SQLITE_PERM:
-        throw InputError(path_ + ": cannot be written: " + text + "; give another file with --history");
+        throw InputError(path_ + ": cannot be written: " + text +
+                         "; give another file with --history");
       case SQLITE_NOTADB:
-        throw InputError(path_ + ": is not a history of 'kinecal watch'; give another file with --history");
+        throw InputError(path_ +
+                         ": is not a history of 'kinecal watch'; give another file with --history");
       case SQLITE_CORRUPT:
-        throw InputError(path_ + ": the history is damaged: " + text +
-                         "; \"sqlite3 <file> .recover\" may save what is left, or move it away to begin anew");
+        throw InputError(
+            path_ + ": the history is damaged: " + text +
+            "; \"sqlite3 <file> .recover\" may save what is left, or move it away to begin anew");
       default:
         throw InputError(path_ + ": " + text);
     }
@@ -192,7 +208,8 @@ class HistoryFile {
   void prepare() {
     if (pragma("PRAGMA application_id") == 0 && pragma("SELECT count(*) FROM sqlite_master") == 0) {
       Transaction adding(*this);
-      if (pragma("SELECT count(*) FROM sqlite_master") == 0) {  // another watcher may have been faster
+      if (pragma("SELECT count(*) FROM sqlite_master") ==
+          0) {  // another watcher may have been faster
         run(kTables);
         run(fmt::format("PRAGMA application_id = {}", kApplication).c_str());
         run(fmt::format("PRAGMA user_version = {}", kVersion).c_str());
@@ -201,8 +218,9 @@ class HistoryFile {
     }
     if (pragma("PRAGMA application_id") != kApplication) check(SQLITE_NOTADB);
     if (const std::int64_t version = pragma("PRAGMA user_version"); version > kVersion) {
-      throw InputError(fmt::format("{}: is a history of version {}, and this kinecal reads up to {}", path_, version,
-                                   kVersion));
+      throw InputError(
+          fmt::format("{}: is a history of version {}, and this kinecal reads up to {}", path_,
+                      version, kVersion));
     }
   }
 
@@ -239,50 +257,60 @@ History::~History() = default;
 std::int64_t History::epoch(const std::string& robot, const std::string& structure,
                             const std::string& result) {
   {
-    detail::Query known(*file_,
-                        "SELECT robot.structure, epoch.id FROM robot LEFT JOIN epoch ON epoch.robot = robot.id AND "
-                        "epoch.result = ? WHERE robot.name = ?",
-                        result, robot);
+    detail::Query known(
+        *file_,
+        "SELECT robot.structure, epoch.id FROM robot LEFT JOIN epoch ON epoch.robot = robot.id AND "
+        "epoch.result = ? WHERE robot.name = ?",
+        result, robot);
     if (known.next()) {
       if (known.text(0) != structure) {
-        throw InputError(fmt::format(
-            "{}: robot '{}' there has other links or joints than the one in its folder: it is the history of another "
-            "robot; rename the folder, or give another file with --history",
-            file_->path(), robot));
+        throw InputError(
+            fmt::format("{}: robot '{}' there has other links or joints than the one in its "
+                        "folder: it is the history of another "
+                        "robot; rename the folder, or give another file with --history",
+                        file_->path(), robot));
       }
       if (known.integer(1) > 0) return known.integer(1);
     }
   }
   detail::HistoryFile::Transaction adding(*file_);
-  detail::Query(*file_, "INSERT OR IGNORE INTO robot(name, structure) VALUES(?, ?)", robot, structure).run();
-  detail::Query(*file_, "INSERT OR IGNORE INTO epoch(robot, result) SELECT id, ? FROM robot WHERE name = ?", result,
-                robot)
+  detail::Query(*file_, "INSERT OR IGNORE INTO robot(name, structure) VALUES(?, ?)", robot,
+                structure)
       .run();
-  detail::Query made(*file_,
-                     "SELECT epoch.id FROM epoch JOIN robot ON robot.id = epoch.robot WHERE robot.name = ? AND "
-                     "epoch.result = ?",
-                     robot, result);
+  detail::Query(*file_,
+                "INSERT OR IGNORE INTO epoch(robot, result) SELECT id, ? FROM robot WHERE name = ?",
+                result, robot)
+      .run();
+  detail::Query made(
+      *file_,
+      "SELECT epoch.id FROM epoch JOIN robot ON robot.id = epoch.robot WHERE robot.name = ? AND "
+      "epoch.result = ?",
+      robot, result);
   const std::int64_t id = made.next() ? made.integer(0) : 0;
   adding.keep();
   return id;
 }
 
 bool History::follows_another(std::int64_t epoch) const {
-  return detail::Query(*file_, "SELECT 1 FROM epoch WHERE robot = ? AND id < ?", detail::robot_of(*file_, epoch), epoch)
+  return detail::Query(*file_, "SELECT 1 FROM epoch WHERE robot = ? AND id < ?",
+                       detail::robot_of(*file_, epoch), epoch)
       .next();
 }
 
 bool History::knows(std::int64_t epoch, const WatchedRecording& file) const {
-  return detail::Query(*file_, "SELECT 1 FROM seen WHERE robot = ? AND name = ? AND size = ? AND modified = ?",
-                       detail::robot_of(*file_, epoch), file.name, file.size, file.modified)
+  return detail::Query(
+             *file_,
+             "SELECT 1 FROM seen WHERE robot = ? AND name = ? AND size = ? AND modified = ?",
+             detail::robot_of(*file_, epoch), file.name, file.size, file.modified)
       .next();
 }
 
 std::optional<History::Place> History::with_content(const std::string& checksum) const {
-  detail::Query query(*file_,
-                      "SELECT robot.name, recording.name FROM recording JOIN robot ON robot.id = recording.robot "
-                      "WHERE checksum = ? AND state != ?",
-                      checksum, static_cast<std::int64_t>(RecordingState::refused));
+  detail::Query query(
+      *file_,
+      "SELECT robot.name, recording.name FROM recording JOIN robot ON robot.id = recording.robot "
+      "WHERE checksum = ? AND state != ?",
+      checksum, static_cast<std::int64_t>(RecordingState::refused));
   if (!query.next()) return std::nullopt;
   return Place{query.text(0), query.text(1)};
 }
@@ -292,15 +320,18 @@ void History::add(std::int64_t epoch, std::span<const WatchedRecording> recordin
   detail::HistoryFile::Transaction adding(*file_);
   const std::int64_t robot = detail::robot_of(*file_, epoch);
   for (const WatchedRecording& of : recordings) {
-    detail::Query(*file_, "INSERT OR REPLACE INTO seen VALUES(?, ?, ?, ?)", robot, of.name, of.size, of.modified).run();
-    detail::Query(*file_, "DELETE FROM recording WHERE robot = ? AND name = ? AND state = ?", robot, of.name,
-                  static_cast<std::int64_t>(RecordingState::refused))
+    detail::Query(*file_, "INSERT OR REPLACE INTO seen VALUES(?, ?, ?, ?)", robot, of.name, of.size,
+                  of.modified)
+        .run();
+    detail::Query(*file_, "DELETE FROM recording WHERE robot = ? AND name = ? AND state = ?", robot,
+                  of.name, static_cast<std::int64_t>(RecordingState::refused))
         .run();
     detail::Query(*file_,
-                  "INSERT OR IGNORE INTO recording(robot, epoch, name, checksum, time, state, reason, samples, "
+                  "INSERT OR IGNORE INTO recording(robot, epoch, name, checksum, time, state, "
+                  "reason, samples, "
                   "statistic, freedom, probability) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                  robot, epoch, of.name, of.checksum, of.time, static_cast<std::int64_t>(of.state), of.reason,
-                  std::int64_t{of.samples}, of.statistic, of.freedom, of.probability)
+                  robot, epoch, of.name, of.checksum, of.time, static_cast<std::int64_t>(of.state),
+                  of.reason, std::int64_t{of.samples}, of.statistic, of.freedom, of.probability)
         .run();
     if (file_->has_changed_a_row()) detail::add_changes(*file_, file_->last_row(), of.changes);
   }
@@ -310,7 +341,8 @@ void History::add(std::int64_t epoch, std::span<const WatchedRecording> recordin
 std::vector<WatchedRecording> History::recordings(std::int64_t epoch) const {
   std::vector<WatchedRecording> all;
   detail::Query query(*file_,
-                      "SELECT id, name, checksum, time, state, reason, samples, statistic, freedom, probability FROM "
+                      "SELECT id, name, checksum, time, state, reason, samples, statistic, "
+                      "freedom, probability FROM "
                       "recording WHERE epoch = ? ORDER BY time, id",
                       epoch);
   while (query.next()) {
@@ -325,13 +357,15 @@ std::vector<WatchedRecording> History::recordings(std::int64_t epoch) const {
     of.freedom = query.number(8);
     of.probability = query.number(9);
     detail::Query changes(*file_,
-                          "SELECT owner, is_frame, parameters, units, change, covariance, score, explains FROM change "
+                          "SELECT owner, is_frame, parameters, units, change, covariance, score, "
+                          "explains FROM change "
                           "WHERE recording = ?",
                           query.integer(0));
     while (changes.next()) {
-      of.changes.push_back({changes.text(0), changes.integer(1) != 0, detail::lines_of(changes.text(2)),
-                            detail::lines_of(changes.text(3)), changes.numbers(4), changes.numbers(5),
-                            changes.number(6), changes.integer(7) != 0});
+      of.changes.push_back({changes.text(0), changes.integer(1) != 0,
+                            detail::lines_of(changes.text(2)), detail::lines_of(changes.text(3)),
+                            changes.numbers(4), changes.numbers(5), changes.number(6),
+                            changes.integer(7) != 0});
     }
   }
   return all;
@@ -348,16 +382,28 @@ class HistoryFile {};
 }  // namespace detail
 
 History::History(const std::string& file, double) {
-  throw InputError(file + ": a history is an SQLite file, and this kinecal was built without libsqlite3; install "
-                          "libsqlite3-dev and build again");
+  throw InputError(
+      file +
+      ": a history is an SQLite file, and this kinecal was built without libsqlite3; install "
+      "libsqlite3-dev and build again");
 }
 History::~History() = default;
-std::int64_t History::epoch(const std::string&, const std::string&, const std::string&) { return 0; }
-bool History::follows_another(std::int64_t) const { return false; }
-bool History::knows(std::int64_t, const WatchedRecording&) const { return false; }
-std::optional<History::Place> History::with_content(const std::string&) const { return std::nullopt; }
+std::int64_t History::epoch(const std::string&, const std::string&, const std::string&) {
+  return 0;
+}
+bool History::follows_another(std::int64_t) const {
+  return false;
+}
+bool History::knows(std::int64_t, const WatchedRecording&) const {
+  return false;
+}
+std::optional<History::Place> History::with_content(const std::string&) const {
+  return std::nullopt;
+}
 void History::add(std::int64_t, std::span<const WatchedRecording>) {}
-std::vector<WatchedRecording> History::recordings(std::int64_t) const { return {}; }
+std::vector<WatchedRecording> History::recordings(std::int64_t) const {
+  return {};
+}
 
 }  // namespace kinecal
 

@@ -48,11 +48,11 @@ struct WatchedRecording {
   std::int64_t modified = 0;  ///< when the file was last written, nanoseconds
   double time = 0.0;          ///< when it was recorded, seconds since 1970
   RecordingState state = RecordingState::refused;
-  std::string reason = {};              ///< why it was refused
-  int samples = 0;                      ///< number of them
-  double statistic = 0.0;               ///< X, see Drift
-  double freedom = 0.0;                 ///< its degrees of freedom
-  double probability = 1.0;             ///< of a larger one by chance
+  std::string reason = {};                  ///< why it was refused
+  int samples = 0;                          ///< number of them
+  double statistic = 0.0;                   ///< X, see Drift
+  double freedom = 0.0;                     ///< its degrees of freedom
+  double probability = 1.0;                 ///< of a larger one by chance
   std::vector<WatchedChange> changes = {};  ///< of all movers
 };
 

@@ -82,7 +82,8 @@ struct LineFit {
 /// Correlation of what is left in consecutive recordings: 0 to 0.9, as a smaller one costs nothing and a larger one cannot
 /// be told from a drift.
 [[nodiscard]] double memory_of(const std::vector<Weighted>& all, const LineFit& fit) {
-  Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(all.front().weight.rows(), all.front().weight.rows());
+  Eigen::MatrixXd mean =
+      Eigen::MatrixXd::Zero(all.front().weight.rows(), all.front().weight.rows());
   for (const Weighted& of : all) mean += of.weight;
   double neighbours = 0.0, own = 0.0;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -106,7 +107,8 @@ std::optional<DriftLine> drift_line(std::span<const TimedChange> changes) {
   constexpr std::ptrdiff_t kLeast = 4;
   if (std::ssize(changes) < kLeast) return std::nullopt;
   const std::size_t parameters = changes.front().change.size();
-  DriftLine line{.recordings = static_cast<int>(changes.size()), .level = {}, .slope = {}, .covariance = {}};
+  DriftLine line{
+      .recordings = static_cast<int>(changes.size()), .level = {}, .slope = {}, .covariance = {}};
   double first = changes.front().time;
   line.last = first;
   for (const TimedChange& of : changes) {
@@ -138,8 +140,7 @@ std::optional<DriftLine> drift_line(std::span<const TimedChange> changes) {
   const double fewer = (1.0 + line.memory) / (1.0 - line.memory);
   const double freedom = (known - static_cast<double>(moving.rank)) / fewer;
   if (rank < 1.0 || freedom < 1.0) return std::nullopt;
-  const double variance =
-      fewer * moving.squares / (known - static_cast<double>(moving.rank));
+  const double variance = fewer * moving.squares / (known - static_cast<double>(moving.rank));
   line.scatter = std::sqrt(variance / fewer);
   line.score += moving.squares + 2.0 * static_cast<double>(moving.rank);
   const double fall = std::max(0.0, still.squares - moving.squares) / rank;
@@ -172,8 +173,8 @@ std::vector<DriftingRobot> drifting_robots(std::span<const MoverLine> lines, dou
     std::stable_sort(movers.begin(), movers.end(), [](const MoverLine* a, const MoverLine* b) {
       return a->line.score < b->line.score;
     });
-    DriftingRobot& of = robots.emplace_back(
-        DriftingRobot{robot, movers.front()->mover, {}, least[robot]});
+    DriftingRobot& of =
+        robots.emplace_back(DriftingRobot{robot, movers.front()->mover, {}, least[robot]});
     for (std::size_t i = 1; i < movers.size(); ++i) {
       if (movers[i]->line.score < movers.front()->line.score + kTold) {
         of.alike.push_back(movers[i]->mover);
@@ -193,19 +194,20 @@ std::optional<When> passes(const DriftLine& line, const ChangeSize& size, double
   const auto k = static_cast<Eigen::Index>(line.slope.size());
   const Eigen::MatrixXd g = detail::matrix_of(size.effect, k);
   const Eigen::VectorXd b = detail::matrix_of(line.slope, k);
-  const Eigen::VectorXd now = Eigen::VectorXd(detail::matrix_of(line.level, k)) + (line.last - line.origin) * b;
+  const Eigen::VectorXd now =
+      Eigen::VectorXd(detail::matrix_of(line.level, k)) + (line.last - line.origin) * b;
   // |now + b t|^2 = limit^2, t from the last recording
   const double at = now.dot(g * now) - limit * limit, half = now.dot(g * b), growth = b.dot(g * b);
   if (at < 0.0 && !(growth > 0.0)) return std::nullopt;
-  const double after =
-      at >= 0.0 ? 0.0 : (std::sqrt(half * half - growth * at) - half) / growth;
+  const double after = at >= 0.0 ? 0.0 : (std::sqrt(half * half - growth * at) - half) / growth;
   When when{line.last + after, 0.0};
   Eigen::VectorXd by(2 * k);  // derivative of half the squared size by a and b
   by.head(k) = g * (now + after * b);
   by.tail(k) = (when.time - line.origin) * by.head(k);
   const double rate = by.head(k).dot(b);
   const Eigen::MatrixXd covariance = detail::matrix_of(line.covariance, 2 * k);
-  if (std::abs(rate) > 0.0) when.deviation = std::sqrt(std::max(0.0, by.dot(covariance * by))) / std::abs(rate);
+  if (std::abs(rate) > 0.0)
+    when.deviation = std::sqrt(std::max(0.0, by.dot(covariance * by))) / std::abs(rate);
   return when;
 }
 

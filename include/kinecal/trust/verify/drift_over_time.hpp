@@ -63,9 +63,9 @@ struct MoverLine {
 
 /// A robot that drifts.
 struct DriftingRobot {
-  int robot = 0;             ///< by number
-  int mover = 0;             ///< the one whose line explains its recordings best
-  std::vector<int> alike;    ///< others that explain them as well: scores that differ by less than 6
+  int robot = 0;           ///< by number
+  int mover = 0;           ///< the one whose line explains its recordings best
+  std::vector<int> alike;  ///< others that explain them as well: scores that differ by less than 6
   double probability = 1.0;  ///< of such a slope, somewhere, by chance
 };
 
@@ -77,7 +77,8 @@ struct DriftingRobot {
 
 /// The size of a change, such as the shift of a tool: sqrt(c^T G c).
 struct ChangeSize {
-  std::vector<double> effect;  ///< (k x k) G, row after row: metres^2 by the units of the parameters
+  std::vector<double>
+      effect;  ///< (k x k) G, row after row: metres^2 by the units of the parameters
 
   /// Of some changes.
   [[nodiscard]] double of(std::span<const double> change) const;
