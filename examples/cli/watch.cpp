@@ -301,7 +301,7 @@ void write(const WatchOptions& options, const std::vector<SeenRobot>& robots,
            const std::string& text) {
   if (options.manner.json) {
     const detail::Json json = watch_json(robots);
-    say("{}\n", options.once ? detail::json_lines(json) : detail::json_text(json));
+    say("{}", options.once ? detail::json_lines(json) : detail::json_text(json) + "\n");
   } else {
     show(text + summary_of(robots) + "\n", options.manner);
   }

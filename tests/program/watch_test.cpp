@@ -71,7 +71,7 @@ class Watched : public test::ProgramTest {
 
 /// KINECAL_REPETITIONS=50: fifty robots by a hundred recordings.
 TEST_F(Watched, NamesTheOneRobotThatDriftsAndNoOther) {
-  const int robots = test::repetitions_of_study(50, 2), nights = robots == 50 ? 100 : 12;
+  const int robots = test::repetitions_of_study(50, 2), nights = robots == 50 ? 100 : 20;
   for (int robot = 0; robot < robots; ++robot) {
     const std::string name = "fleet/arm_" + std::to_string(robot);
     add_robot(name, 100 + static_cast<unsigned>(robot));

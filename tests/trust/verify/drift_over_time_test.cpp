@@ -85,6 +85,20 @@ TEST(DriftOverTime, FindsTheOneOfFiftyRobotsThatDriftsAndNoOther) {
   }
 }
 
+/// A zero that wanders, as by temperature, seldom looks like a drift.
+TEST(DriftOverTime, SeldomTakesAWanderingZeroForADrift) {
+  for (const int nights : {6, 12, 30}) {
+    std::mt19937 random(9);
+    int alarms = 0;
+    constexpr int kLines = 1000;
+    for (int i = 0; i < kLines; ++i) {
+      const auto line = drift_line(Nights{.count = nights, .memory = 0.5}.draw(random));
+      alarms += line->probability < 0.01 ? 1 : 0;
+    }
+    EXPECT_LE(alarms, 20) << nights << " nights: 10 are expected of a test at one per cent";
+  }
+}
+
 TEST(DriftOverTime, FindsAFrameThatSlidesAlongWhatRecordingsDetermine) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;

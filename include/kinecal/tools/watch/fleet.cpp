@@ -48,7 +48,7 @@ void find_robots(const fs::path& folder, const std::string& name, const WatchedF
 
 /// True for what is beside recordings, or is not finished.
 [[nodiscard]] bool is_beside(const std::string& name) {
-  if (name == "columns.yaml") return true;
+  if (name == "columns.yaml" || name == "history.sqlite") return true;
   constexpr const char* kEnds[] = {".part", ".tmp", ".active", "~", "-wal", "-shm", "-journal"};
   return std::any_of(std::begin(kEnds), std::end(kEnds),
                      [&](const char* end) { return name.ends_with(end); });

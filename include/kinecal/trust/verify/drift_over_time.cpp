@@ -91,8 +91,7 @@ struct LineFit {
     own += weighted.dot(fit.rest(all[i]));
     if (i > 0) neighbours += weighted.dot(fit.rest(all[i - 1]));
   }
-  constexpr double kMost = 0.9;
-  return own > 0.0 ? std::clamp(neighbours / own, 0.0, kMost) : 0.0;
+  return own > 0.0 ? std::clamp(neighbours / own, 0.0, kMostMemory) : 0.0;
 }
 
 }  // namespace
@@ -137,23 +136,26 @@ std::optional<DriftLine> drift_line(std::span<const TimedChange> changes) {
   const detail::LineFit still(all, false), moving(all, true);
   const auto rank = static_cast<double>(moving.rank - still.rank);
   line.memory = detail::memory_of(all, moving);
-  const double fewer = (1.0 + line.memory) / (1.0 - line.memory);
-  const double freedom = (known - static_cast<double>(moving.rank)) / fewer;
+  const double freedom = known - static_cast<double>(moving.rank);
   if (rank < 1.0 || freedom < 1.0) return std::nullopt;
-  const double variance = fewer * moving.squares / (known - static_cast<double>(moving.rank));
-  line.scatter = std::sqrt(variance / fewer);
+  const double variance = moving.squares / freedom;
+  line.scatter = std::sqrt(variance);
   line.score += moving.squares + 2.0 * static_cast<double>(moving.rank);
   const double fall = std::max(0.0, still.squares - moving.squares) / rank;
-  line.probability = variance > 0.0 ? f_tail(fall / variance, rank, freedom)
-                     : fall > 0.0   ? 0.0
-                                    : 1.0;
+  const double most = detail::fewer(std::min(
+      detail::kMostMemory, line.memory + 2.0 / std::sqrt(static_cast<double>(changes.size()))));
+  if (freedom / most >= 1.0) {
+    line.probability = variance > 0.0 ? f_tail(fall / (most * variance), rank, freedom / most)
+                       : fall > 0.0   ? 0.0
+                                      : 1.0;
+  }
   Eigen::VectorXd unit = Eigen::VectorXd::Ones(2 * k);
   unit.tail(k).setConstant(1.0 / span);
   const Eigen::VectorXd values = unit.cwiseProduct(moving.values);
   line.level = detail::numbers_of(values.head(k));
   line.slope = detail::numbers_of(values.tail(k));
-  line.covariance =
-      detail::numbers_of(variance * (unit.asDiagonal() * moving.covariance * unit.asDiagonal()));
+  line.covariance = detail::numbers_of(detail::fewer(line.memory) * variance *
+                                       (unit.asDiagonal() * moving.covariance * unit.asDiagonal()));
   return line;
 }
 

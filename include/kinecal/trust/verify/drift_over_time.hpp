@@ -6,7 +6,9 @@
 //
 // V_i contains the error of the calibration, which all recordings share: a takes it up.  What recordings really differ by
 // is measured about the line, s^2 = Q / freedom, and errors that are alike from one recording to the next (a warm week,
-// correlation rho) count as fewer: s^2 (1 + rho) / (1 - rho).  The fall of Q by b is compared with F.
+// correlation rho) count as fewer: s^2 (1 + rho) / (1 - rho).  The fall of Q by b is compared with F, for the largest rho
+// that n recordings allow, rho + 2 / sqrt(n): a wandering zero and a drift look alike at first.  So with fewer than about
+// eight recordings nothing is found.
 // Lines of several movers are compared by the X that they leave in all recordings, plus 2 rank.
 // A drift of any of n movers of all robots is found if its probability is below level / n (Bonferroni).
 // Source: Bartlett, On the Theoretical Specification and Sampling Properties of Autocorrelated Time-Series, 1946 (rho).
