@@ -28,7 +28,6 @@
 namespace kinecal::cli {
 namespace {
 
-constexpr double kDay = 86'400.0;
 constexpr double kNano = 1e-9;
 
 /// When the samples were recorded, seconds since 1970: by their first stamp, if it is a date; else when the file was

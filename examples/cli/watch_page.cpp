@@ -21,7 +21,7 @@ namespace {
 
 using detail::Json;
 
-constexpr double kDay = 86'400.0, kWeek = 7.0 * kDay;
+constexpr double kWeek = 7.0 * kDay;
 
 const char* state_text(const SeenRobot& robot) {
   if (!robot.fault.empty()) return "cannot be checked";

@@ -10,6 +10,8 @@
 
 namespace kinecal::cli {
 
+inline constexpr double kDay = 86'400.0;  ///< seconds
+
 /// A robot after a look at its recordings.
 struct SeenRobot {
   std::string name;        ///< in the tree
