@@ -47,7 +47,7 @@ kinecal_add_optional(io liblz4 TARGETS PkgConfig::liblz4 DEBIAN liblz4-dev
 kinecal_add_optional(io libzstd TARGETS PkgConfig::libzstd DEBIAN libzstd-dev
   FLAGS -lzstd DEFINE KINECAL_HAVE_ZSTD FOR "ROS 2 bags compressed with zstd")
 kinecal_add_optional(io SQLite3 TARGETS SQLite::SQLite3 DEBIAN libsqlite3-dev
-  FLAGS -lsqlite3 DEFINE KINECAL_HAVE_SQLITE FOR "ROS 2 bags of .db3 files")
+  FLAGS -lsqlite3 DEFINE KINECAL_HAVE_SQLITE FOR "ROS 2 bags of .db3 files and the history of watch")
 kinecal_add_optional(io PNG TARGETS PNG::PNG DEBIAN libpng-dev
   FLAGS -lpng DEFINE KINECAL_HAVE_PNG FOR "PNG images")
 kinecal_add_optional(io JPEG TARGETS JPEG::JPEG DEBIAN libjpeg-dev

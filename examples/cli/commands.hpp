@@ -215,6 +215,41 @@ int evaluate(const RecheckOptions& options);
 /// Decides whether a result still holds for a few new samples, and what has moved if not.
 int verify(const RecheckOptions& options);
 
+struct WatchOptions {
+  std::string tree;               ///< folder
+  std::string history;            ///< file; empty: history.sqlite in the tree
+  std::string result = "result";  ///< folders of a robot
+  std::string recordings = "recordings";
+  std::optional<Recorded> recorded;     ///< before or after the result was installed
+  std::vector<std::string> mesh_paths;  ///< where the URDF's packages may be
+  std::string report;                   ///< a page or JSON is written there
+  double limit = 0.0;                   ///< millimetres; 0: three times the +- of the result
+  double ahead = 7.0;                   ///< days
+  double level = 0.01;                  ///< share of false alarms
+  double settle = 10.0;                 ///< seconds after which a file is no longer written to
+  double interval = 60.0;               ///< seconds between looks
+  bool once = false;                    ///< look once
+  Manner manner = {};
+};
+
+/// Verifies the recordings of many robots as they appear, and says which of them have to be calibrated again.
+int watch(const WatchOptions& options);
+
+struct GradeOptions {
+  std::vector<std::string> episodes;  ///< files, or folders of them
+  std::string result;        ///< folder that calibrate wrote; empty: the episodes are calibrated
+  std::string urdf, config;  ///< files, without a result
+  std::vector<std::string> cameras;     ///< NAME=FILE
+  std::optional<Recorded> recorded;     ///< before or after the result was installed
+  std::vector<std::string> mesh_paths;  ///< where the URDF's packages may be
+  std::string report;                   ///< JSON is written there
+  double level = 0.01;  ///< probability of naming any episode of a consistent data set
+  Manner manner = {};
+};
+
+/// Finds the episodes of a data set in which the camera or a zero is not as in the others.
+int grade(const GradeOptions& options);
+
 struct CompareOptions {
   std::string a, b;    ///< folders that calibrate wrote
   std::string report;  ///< JSON is written there

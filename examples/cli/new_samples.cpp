@@ -112,8 +112,7 @@ struct Explanation {
 
 Explanation explanation(const StoredResult& result, const NewSamples& fresh, double level) {
   if (!std::isfinite(fresh.misfit)) return {};
-  const Drift drift =
-      check_drift(fresh.problem(), fresh.samples, result.state(fresh.problem().table()), {level});
+  const Drift drift = drift_of(result, fresh, {level});
   const bool moved = !drift.movers.empty() && drift.movers.front().explains;
   return {drift.holds ? Explanation::holds
           : moved     ? Explanation::one_moved
@@ -223,6 +222,16 @@ bool take_off(const StoredResult& result, const AnyProblem& problem, std::vector
   return changes;
 }
 
+Calibration with_movers(const StoredResult& result) {
+  Diagnostics ignored;  // calibrate said it
+  return assemble(with_possible_movers(result.config, result.robot), result.robot, {}, ignored);
+}
+
+Drift drift_of(const StoredResult& result, const NewSamples& fresh, const DriftOptions& options) {
+  return check_drift(fresh.problem(), fresh.samples, result.state(fresh.problem().table()),
+                     options);
+}
+
 std::string urdf_beside_meshes(const StoredResult& result) {
   return std::filesystem::exists(result.urdf_then) ? result.urdf_then : result.urdf;
 }
@@ -256,6 +265,13 @@ std::vector<Sample> read_new_recordings(const NewSampleOptions& options, Diagnos
 }
 
 NewSamples read_new_samples(const StoredResult& result, const NewSampleOptions& options) {
+  Diagnostics diagnostics;
+  std::vector<Sample> samples = read_new_recordings(options, diagnostics);
+  return hold_against(result, std::move(samples), options, std::move(diagnostics));
+}
+
+NewSamples hold_against(const StoredResult& result, std::vector<Sample> samples,
+                        const NewSampleOptions& options, Diagnostics diagnostics) {
   if (!result.config.per_sample.empty()) {
     throw InputError(
         fmt::format("{}: its target has a pose of its own in each sample (per_sample: {}), so new "
@@ -264,7 +280,8 @@ NewSamples read_new_samples(const StoredResult& result, const NewSampleOptions& 
                     result.folder, result.config.per_sample.front().name));
   }
   NewSamples fresh;
-  fresh.samples = read_new_recordings(options, fresh.diagnostics);
+  fresh.samples = std::move(samples);
+  fresh.diagnostics = std::move(diagnostics);
   if (!fresh.diagnostics.errors.empty()) return fresh;
   Config config = result.config;
   const bool is_of_surface = compares_surface(config);

@@ -58,6 +58,18 @@ bool take_off(const StoredResult& result, const AnyProblem& problem, std::vector
 /// The same, held against a result, and doubted.
 [[nodiscard]] NewSamples read_new_samples(const StoredResult& result,
                                           const NewSampleOptions& options);
+/// The same of samples that have been read.
+/// @param diagnostics  of their reader
+[[nodiscard]] NewSamples hold_against(const StoredResult& result, std::vector<Sample> samples,
+                                      const NewSampleOptions& options,
+                                      Diagnostics diagnostics = {});
+
+/// Whether a result still holds for new samples, and what has moved.
+[[nodiscard]] Drift drift_of(const StoredResult& result, const NewSamples& fresh,
+                             const DriftOptions& options);
+
+/// A result's configuration with all that may have moved, without samples.
+[[nodiscard]] Calibration with_movers(const StoredResult& result);
 
 /// Noise of the calibration and the worst feature of each new sample, by error block of the problem.
 [[nodiscard]] Assessment assess_new(const StoredResult& result, const NewSamples& fresh);

@@ -962,6 +962,19 @@ void add_inspect(CLI::App& command, std::vector<std::string>& samples) {
   command.add_option("samples", samples, "recorded samples")->required()->type_name("FILE");
 }
 
+/// When samples were recorded, of commands that hold them against a result.
+void add_recorded(CLI::App& command, std::optional<kinecal::Recorded>& recorded) {
+  command
+      .add_option_function<std::string>(
+          "--samples-recorded",
+          [&recorded](const std::string& when) {
+            recorded = when == "before" ? kinecal::Recorded::before : kinecal::Recorded::after;
+          },
+          "before or after calibrated.urdf and the calibrated cameras were installed; default: "
+          "what fits better")
+      ->check(one_word_of({"after", "before"}));
+}
+
 /// Result, samples, cameras and report of evaluate and verify.
 void add_recheck(CLI::App& command, RecheckOptions& options) {
   command.add_option("result", options.result, "folder that calibrate wrote")
@@ -971,16 +984,7 @@ void add_recheck(CLI::App& command, RecheckOptions& options) {
       ->required()
       ->type_name("FILE");
   add_cameras(command, options.cameras);
-  command
-      .add_option_function<std::string>(
-          "--samples-recorded",
-          [&options](const std::string& when) {
-            options.recorded =
-                when == "before" ? kinecal::Recorded::before : kinecal::Recorded::after;
-          },
-          "before or after calibrated.urdf and the calibrated cameras were installed; default: "
-          "what fits better")
-      ->check(one_word_of({"after", "before"}));
+  add_recorded(command, options.recorded);
   command.add_option("--report", options.report, "write what is found as JSON")->type_name("FILE");
   add_mesh_path(command, options.mesh_paths);
   add_manner(command, options.manner);
@@ -1004,6 +1008,98 @@ void add_verify(CLI::App& command, RecheckOptions& options) {
                   "false alarm rate: how often a valid result may be rejected")
       ->check(CLI::Range(1e-6, 0.5))
       ->capture_default_str();
+}
+
+void add_watch(CLI::App& command, WatchOptions& options) {
+  command
+      .add_option("tree", options.tree,
+                  "folder of robots, each a folder with a result and the recordings that appear")
+      ->required()
+      ->type_name("DIR");
+  command.add_flag("--once", options.once,
+                   "look once: exit code 2 if a robot has to be calibrated again");
+  command.add_option("--interval", options.interval, "seconds between looks, without --once")
+      ->check(CLI::Range(0.1, 1e6))
+      ->capture_default_str();
+  command
+      .add_option("--history", options.history, "file of the history, default: DIR/history.sqlite")
+      ->type_name("FILE");
+  command
+      .add_option("--result", options.result,
+                  "name of the folder, in that of a robot, that calibrate wrote")
+      ->capture_default_str()
+      ->type_name("NAME");
+  command
+      .add_option("--recordings", options.recordings,
+                  "name of the folder, in that of a robot, where recordings appear")
+      ->capture_default_str()
+      ->type_name("NAME");
+  command
+      .add_option(
+          "--limit", options.limit,
+          "change of the gripper's pose that matters, in mm, or with a unit: 0.5mm; default: "
+          "three times the +- of the result")
+      ->transform(CLI::AsNumberWithUnit(
+          std::map<std::string, double>{{"mm", 1.0}, {"cm", 10.0}, {"m", 1000.0}, {"in", 25.4}},
+          CLI::AsNumberWithUnit::CASE_SENSITIVE, "LENGTH"))
+      ->check(CLI::PositiveNumber)
+      ->option_text("LENGTH");
+  command
+      .add_option("--ahead", options.ahead,
+                  "calibrate again if the limit is reached within so many days")
+      ->check(CLI::Range(0.0, 3650.0))
+      ->capture_default_str();
+  command
+      .add_option("--level", options.level,
+                  "false alarm rate: of a verdict on a recording, and of all robots together")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->capture_default_str();
+  command
+      .add_option("--settle", options.settle,
+                  "seconds without a change after which a recording is complete")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  add_recorded(command, options.recorded);
+  command
+      .add_option("--report", options.report,
+                  "write what is found: a page with charts if the name ends in .html, else JSON")
+      ->type_name("FILE");
+  command.add_flag("--json", options.manner.json,
+                   "print JSON; without --once, a line whenever something is new");
+  add_mesh_path(command, options.mesh_paths);
+  add_manner(command, options.manner);
+}
+
+void add_grade(CLI::App& command, GradeOptions& options) {
+  command.add_option("episodes", options.episodes, "recordings, or folders of them")
+      ->required()
+      ->type_name("FILE");
+  CLI::Option* result =
+      command
+          .add_option("--result", options.result,
+                      "folder that calibrate wrote; without it, each tenth of the episodes is held "
+                      "against a calibration with the others")
+          ->type_name("DIR");
+  CLI::Option* urdf = command.add_option("--urdf", options.urdf, "the robot, without a result")
+                          ->type_name("FILE")
+                          ->excludes(result);
+  CLI::Option* config =
+      command.add_option("--config", options.config, "what is calibrated, without a result")
+          ->type_name("FILE")
+          ->excludes(result);
+  urdf->needs(config);
+  config->needs(urdf);
+  add_cameras(command, options.cameras);
+  add_recorded(command, options.recorded);
+  command
+      .add_option("--level", options.level,
+                  "probability of naming any episode of a data set that is consistent")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->capture_default_str();
+  command.add_option("--report", options.report, "write what is found as JSON")->type_name("FILE");
+  command.add_flag("--json", options.manner.json, "print it as JSON");
+  add_mesh_path(command, options.mesh_paths);
+  add_manner(command, options.manner);
 }
 
 void add_compare(CLI::App& command, CompareOptions& options) {
@@ -1174,6 +1270,15 @@ void add_commands(Commands& commands, const kinecal::ShellCommand& line) {
   commands.add<RecheckOptions>(
       "verify", "decide by a few new samples whether a result still holds, and what has moved",
       add_verify, verify);
+  commands.add<WatchOptions>("watch",
+                             "verify the recordings of many robots as they appear: which of them "
+                             "drift, and when they have "
+                             "to be calibrated again",
+                             add_watch, watch);
+  commands.add<GradeOptions>(
+      "grade",
+      "find the episodes of a data set in which the camera or a zero is not as in the others",
+      add_grade, grade);
   commands.add<CompareOptions>("compare",
                                "list what differs between two results by more than its uncertainty",
                                add_compare, compare);

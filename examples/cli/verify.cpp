@@ -16,6 +16,7 @@
 #include "kinecal/text/counted.hpp"
 #include "kinecal/trust/verify/pose_change.hpp"
 #include "kinecal/trust/verify/solution_change.hpp"
+#include "moved_text.hpp"
 #include "new_samples.hpp"
 #include "output_file.hpp"
 #include "terminal.hpp"
@@ -45,36 +46,9 @@ std::string name_of(const Check& check, const Mover& mover) {
   return (is_joint ? "joint '" : is_sensor ? "sensor '" : "error block '") + mover.owner + "'";
 }
 
-/// The length of some changes, and its standard deviation.
-std::string length_text(const std::vector<std::pair<double, double>>& changes, const char* unit) {
-  double length = 0.0, variance = 0.0;
-  for (const auto& [change, deviation] : changes) length += change * change;
-  length = std::sqrt(length);
-  for (const auto& [change, deviation] : changes) {
-    const double share = length > 0.0 ? change / length : 1.0;
-    variance += share * share * deviation * deviation;
-  }
-  return reading(length, unit) + " +- " + reading(std::sqrt(variance), unit);
-}
-
 /// "0.57 deg +- 0.01 deg"
 std::string change_text(const Check& check, const Mover& mover) {
-  std::vector<std::pair<double, double>> lengths, angles;
-  std::string text;
-  for (std::size_t i = 0; i < mover.parameters.size(); ++i) {
-    const Parameter& parameter = check.table()[mover.parameters[i]];
-    const double change = mover.change[i], deviation = mover.deviation[i];
-    if (mover.is_frame) {
-      (parameter.unit == "m" ? lengths : angles).emplace_back(change, deviation);
-      continue;
-    }
-    text += fmt::format("{}{}{} +- {}", text.empty() ? "" : ", ",
-                        parameter.name == mover.owner ? "" : parameter.name + " ",
-                        reading(change, parameter.unit), reading(deviation, parameter.unit));
-  }
-  if (!lengths.empty()) text += length_text(lengths, "m");
-  if (!angles.empty()) text += (text.empty() ? "" : ", ") + length_text(angles, "rad");
-  return text;
+  return change_text(named_change(mover, check.table()));
 }
 
 /// By how much the pose in question is off if this has moved; poses of 0: it is not known.
@@ -479,10 +453,7 @@ int verify(const RecheckOptions& options) {
     say("verdict: does not hold\n  - with this result, a recorded point is behind a camera\n");
     return kNotUsable;
   }
-  const Check check{result, fresh,
-                    check_drift(fresh.problem(), fresh.samples,
-                                result.state(fresh.problem().table()), {options.level}),
-                    options.level};
+  const Check check{result, fresh, drift_of(result, fresh, {options.level}), options.level};
   std::string text = verdict_text(check);
   if (result.verdict != "good") {
     text += fmt::format("  - the result itself was judged '{}'\n", result.verdict);

@@ -12,6 +12,7 @@
 #include "kinecal/report/charts/density.hpp"
 #include "kinecal/report/charts/depth.hpp"
 #include "kinecal/report/charts/distance_axis.hpp"
+#include "kinecal/report/charts/drift_over_time.hpp"
 #include "kinecal/report/charts/errors.hpp"
 #include "kinecal/report/charts/features.hpp"
 #include "kinecal/report/charts/held_out.hpp"

@@ -1,4 +1,4 @@
-// Umbrella header of tools/: what the program offers beside calibrations: init, detect, install, simulation.
+// Umbrella header of tools/: what the program offers beside calibrations: init, detect, install, simulation, watch.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -40,3 +40,5 @@
 #include "kinecal/tools/simulation/pose_samples.hpp"
 #include "kinecal/tools/simulation/simulation_plan.hpp"
 #include "kinecal/tools/simulation/touched_samples.hpp"
+#include "kinecal/tools/watch/fleet.hpp"
+#include "kinecal/tools/watch/history.hpp"

@@ -51,5 +51,6 @@
 #include "kinecal/trust/uncertainty/weak_parameters.hpp"
 #include "kinecal/trust/uncertainty/workspace_map.hpp"
 #include "kinecal/trust/verify/drift.hpp"
+#include "kinecal/trust/verify/drift_over_time.hpp"
 #include "kinecal/trust/verify/pose_change.hpp"
 #include "kinecal/trust/verify/solution_change.hpp"

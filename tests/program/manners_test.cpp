@@ -290,6 +290,7 @@ TEST_F(Manners, NoMarkThatTurnsTheDirectionOfWritingReachesTheTerminal) {
            "calibrate " + input + "--dry-run", "calibrate " + input + "--dry-run --verbose",
            "calibrate " + input + "--dry-run --json", "check " + input, "inspect samples.yaml",
            "verify out samples.yaml", "evaluate out samples.yaml", "compare out out",
+           "grade samples.yaml --result out",
            "init --force --urdf ur5e.urdf --target tracker --arm " + odd,
            "init --force --urdf ur5e.urdf --target tracker", "plot report.html --list",
            "plot report.html " + odd + " -o figures", "check --urdf ur5e.urdf --config wrong.yaml",

@@ -71,11 +71,12 @@ error_blocks:
 
 /// Samples of a robot whose lift is 0.02 rad off and whose elbow -0.03; the tracker stands at
 /// (0.7, -0.4, 0.2) and measures two reflectors in the tool to 0.05 mm.
-inline std::vector<Sample> arm_samples(const Robot& robot, int count) {
+/// @param seed  of poses and noise
+inline std::vector<Sample> arm_samples(const Robot& robot, int count, unsigned seed = 7) {
   const RuntimeChain arm = make_chain(robot, "base_link", "tool");
   const Pose<double> base_T_tracker{rotation_from_rpy(Vector3<double>(0.1, -0.2, 0.7)),
                                     Vector3<double>(0.7, -0.4, 0.2)};
-  std::mt19937 random(7);
+  std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 5e-5);
   std::vector<Sample> samples;
   for (int n = 0; n < count; ++n) {

@@ -7,7 +7,12 @@
 #include <openssl/evp.h>
 
 #include <algorithm>
+#include <fstream>
+#include <memory>
 #include <stdexcept>
+#include <vector>
+
+#include "kinecal/files/diagnostics.hpp"
 
 namespace kinecal {
 
@@ -39,6 +44,25 @@ std::array<std::uint8_t, 32> sha256(std::string_view bytes) {
 
 std::string sha256_text(std::string_view bytes) {
   return fmt::format("{:02x}", fmt::join(sha256(bytes), ""));
+}
+
+std::string sha256_of_files(std::span<const std::string> files) {
+  const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> sum(EVP_MD_CTX_new(), EVP_MD_CTX_free);
+  bool works = sum && EVP_DigestInit_ex(sum.get(), EVP_sha256(), nullptr) == 1;
+  std::vector<char> part(std::size_t{1} << 20U);
+  for (const std::string& file : files) {
+    std::ifstream in(file, std::ios::binary);
+    while (in.read(part.data(), static_cast<std::streamsize>(part.size())) || in.gcount() > 0) {
+      const auto size = static_cast<std::size_t>(in.gcount());
+      works = works && EVP_DigestUpdate(sum.get(), part.data(), size) == 1;
+    }
+    if (!in.eof()) throw InputError(file + ": cannot be read");
+  }
+  std::array<std::uint8_t, 32> digest{};
+  if (!works || EVP_DigestFinal_ex(sum.get(), digest.data(), nullptr) != 1) {
+    throw std::runtime_error("libcrypto has no SHA-256: its configuration excludes it");
+  }
+  return fmt::format("{:02x}", fmt::join(digest, ""));
 }
 
 std::string base64(std::string_view bytes) {

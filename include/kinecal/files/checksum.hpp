@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,10 @@ namespace kinecal {
 
 /// The same as `sha256sum` prints it: 64 hexadecimal digits.
 [[nodiscard]] std::string sha256_text(std::string_view bytes);
+
+/// The same of the bytes of files, one after another, which need not fit into memory.
+/// @throws InputError  naming a file that cannot be read
+[[nodiscard]] std::string sha256_of_files(std::span<const std::string> files);
 
 /// Bytes as base64, padded.
 /// Source: RFC 4648, 4

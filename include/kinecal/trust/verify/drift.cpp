@@ -595,10 +595,11 @@ void try_mover(const AnyProblem& problem, const DriftSearch& search, double leve
   const CleanFit found = search.clean_fit(mover.parameters);
   const Eigen::Index size = std::ssize(mover.parameters);
   const Eigen::VectorXd change = found.at.z.tail(size);
-  const Eigen::VectorXd variance = found.at.inverse.diagonal().tail(size);
+  const Eigen::MatrixXd covariance = found.at.inverse.bottomRightCorner(size, size);
   for (Eigen::Index i = 0; i < size; ++i) {
     mover.change.push_back(change(i));
-    mover.deviation.push_back(std::sqrt(std::max(0.0, variance(i))));
+    mover.deviation.push_back(std::sqrt(std::max(0.0, covariance(i, i))));
+    for (Eigen::Index j = 0; j < size; ++j) mover.covariance.push_back(covariance(i, j));
   }
   mover.statistic = found.at.statistic;
   mover.freedom = found.freedom;
@@ -640,7 +641,7 @@ Drift check_drift(const AnyProblem& problem, std::span<const Sample> samples,
   drift.holds = drift.probability >= options.level;
   if (drift.holds) {
     drift.visible = search.smallest_changes(still);
-    return drift;
+    if (!options.all_movers) return drift;
   }
   for (Mover mover : search.movers()) {
     detail::try_mover(problem, search, options.level, mover);
@@ -649,7 +650,7 @@ Drift check_drift(const AnyProblem& problem, std::span<const Sample> samples,
   std::stable_sort(drift.movers.begin(), drift.movers.end(), [](const Mover& a, const Mover& b) {
     return a.explains != b.explains ? a.explains : a.score < b.score;
   });
-  if (drift.movers.empty()) return drift;
+  if (drift.holds || drift.movers.empty()) return drift;
   constexpr double kTold = 6.0;  // likelihood ratio of 20
   const auto best = drift.movers.begin();
   drift.score = best->explains ? best->score : std::min(drift.score, best->score);

@@ -62,6 +62,7 @@ struct Mover {
   std::vector<std::string> same = {};     ///< other owners with the same effect on all new samples
   std::vector<double> change = {};        ///< of each parameter, since the calibration
   std::vector<double> deviation = {};     ///< standard deviation of each change
+  std::vector<double> covariance = {};    ///< (k x k) of the k changes, row after row
   double statistic = 0.0;                 ///< remaining X
   double freedom = 0.0;                   ///< its degrees of freedom
   double probability = 0.0;               ///< of a larger X by chance
@@ -87,7 +88,8 @@ struct Drift {
   double probability = 1.0;    ///< of a larger X, or of a larger fall by a mover, by chance
   double score = 0.0;          ///< of the best explanation: that nothing or one mover has moved
   std::vector<MissedSample> missed;  ///< bad captures, if the others hold
-  std::vector<Mover> movers;         ///< the most likely one first; empty if the calibration holds
+  /// The most likely one first; empty if the calibration holds, unless DriftOptions::all_movers.
+  std::vector<Mover> movers;
   /// How many of the first movers are indistinguishable: scores that differ by less than 6.  The
   /// one with the fewest parameters comes first.
   int alike = 0;
@@ -97,7 +99,8 @@ struct Drift {
 
 /// How to decide.
 struct DriftOptions {
-  double level = 0.01;  ///< share of false alarms
+  double level = 0.01;      ///< share of false alarms
+  bool all_movers = false;  ///< also of a calibration that holds: how far each may have moved
 };
 
 /// Checks a calibration with new samples.

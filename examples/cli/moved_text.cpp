@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "moved_text.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "kinecal/text/reading.hpp"
+
+namespace kinecal::cli {
+
+NamedChange named_change(const Mover& mover, const ParameterTable& table) {
+  NamedChange named{mover.owner, mover.is_frame, {}, {}, mover.change, mover.deviation};
+  for (const int parameter : mover.parameters) {
+    named.parameters.push_back(table[parameter].name);
+    named.units.push_back(table[parameter].unit);
+  }
+  return named;
+}
+
+std::string change_text(const NamedChange& of, const std::string& per) {
+  std::vector<std::pair<double, double>> lengths, angles;
+  std::string text;
+  for (std::size_t i = 0; i < of.parameters.size(); ++i) {
+    const std::string& unit = of.units[i];
+    if (of.is_frame) {
+      (unit == "m" ? lengths : angles).emplace_back(of.change[i], of.deviation[i]);
+      continue;
+    }
+    text += fmt::format("{}{}{}{} +- {}", text.empty() ? "" : ", ",
+                        of.parameters[i] == of.owner ? "" : of.parameters[i] + " ",
+                        reading(of.change[i], unit), per, reading(of.deviation[i], unit));
+  }
+  if (!lengths.empty()) text += length_text(lengths, "m", per);
+  if (!angles.empty()) text += (text.empty() ? "" : ", ") + length_text(angles, "rad", per);
+  return text;
+}
+
+std::string length_text(const std::vector<std::pair<double, double>>& changes, const char* unit,
+                        const std::string& per) {
+  double length = 0.0, variance = 0.0;
+  for (const auto& [change, deviation] : changes) length += change * change;
+  length = std::sqrt(length);
+  for (const auto& [change, deviation] : changes) {
+    const double share = length > 0.0 ? change / length : 1.0;
+    variance += share * share * deviation * deviation;
+  }
+  return reading(length, unit) + per + " +- " + reading(std::sqrt(variance), unit);
+}
+
+}  // namespace kinecal::cli
