@@ -113,8 +113,14 @@ struct InitOptions {
   std::string form;      ///< of these poses; empty: by the names of columns
   bool inverse = false;  ///< they are those of the base in the flange
   std::string corners, target_points;  ///< tables beside them; empty: photographs
-  bool force = false;                  ///< replace a file
+  std::string drive, seen, sensor;     ///< of a base: see tools/init/initial_base.hpp; empty: ask
+  std::optional<double> wheel_radius, track_width, wheelbase,
+      gyro_scale;      ///< of it, metres; a factor
+  bool force = false;  ///< replace a file
 };
+
+/// Writes the configuration of a mobile base; of a table, columns.yaml, too, and without a URDF one of the base alone.
+int init_base(const InitOptions& options);
 
 /// Writes a URDF, columns.yaml, a configuration and, for photographs, capture.yaml from poses of a
 /// flange.

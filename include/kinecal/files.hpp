@@ -48,6 +48,7 @@
 #include "kinecal/files/poses/poses.hpp"
 #include "kinecal/files/recordings/bag_output.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
+#include "kinecal/files/recordings/base_conditions.hpp"
 #include "kinecal/files/recordings/base_messages.hpp"
 #include "kinecal/files/recordings/convert.hpp"
 #include "kinecal/files/recordings/fixed_frames.hpp"

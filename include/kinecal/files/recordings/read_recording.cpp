@@ -90,7 +90,7 @@ Recording read_as_recorded(const std::string& path, Diagnostics& diagnostics, un
   read_bag(path, {wants, handle, meter}, diagnostics);
   recording.samples = samples.take(diagnostics);
   if (number == 0 && is_drive && diagnostics.errors.size() == errors_before) {
-    recording.samples = read_base_drive(path, diagnostics);
+    recording.samples = read_base_drive(path, diagnostics).samples;
   } else if (number == 0 && diagnostics.errors.size() == errors_before) {
     diagnostics.error({path, 0},
                       "no messages of robot_calibration_msgs/CalibrationData in this bag; "
