@@ -311,7 +311,17 @@ struct CaptureOptions {
   bool manual = false;                       ///< a person moves the robot
   bool resume = false;                       ///< go on with the samples of the output
   bool force = false;                        ///< replace results
+  bool drive = false;                        ///< a base: command it
+  std::vector<std::string> topics = {};      ///< of a base: KEY=NAME
+  std::optional<double> distance = {};       ///< of its straight runs, metres
+  std::optional<double> seconds = {};        ///< how long it is recorded; nullopt: until Enter
 };
+
+/// True if a configuration has an error block of a mobile base.
+[[nodiscard]] bool is_base_config(const std::string& path);
+
+/// Records the drive of a mobile base, and drives it if that is asked for.
+int capture_base(const CaptureOptions& options);
 
 /// Moves a robot through poses and records what its finders see.
 int capture(const CaptureOptions& options);

@@ -838,6 +838,25 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
   command.add_option("--velocity", options.velocity, "speed, as a fraction of normal")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
+  command.add_flag("--drive", options.drive,
+                   "with the configuration of a mobile base: command it to turn in place, and ahead and "
+                   "back in front of a wall (1.5 rad/s and 0.2 m/s at most, times --velocity); "
+                   "without it, you drive");
+  command
+      .add_option("--distance", options.distance, "of these runs ahead, default: 1")
+      ->type_name("METRES");
+  command
+      .add_option("--seconds", options.seconds,
+                  "how long a base is recorded that you drive; default: until Enter")
+      ->check(CLI::PositiveNumber)
+      ->excludes("--drive")
+      ->type_name("S");
+  command
+      .add_option("--topic", options.topics,
+                  "a topic of a base: odom=, scan=, commands= (default: /odom, /base_scan or /scan, "
+                  "/cmd_vel), imu=, wheels= or pose=")
+      ->allow_extra_args(false)
+      ->type_name("KEY=NAME");
   command.add_flag("--resume", options.resume,
                    "continue an interrupted session: record the poses that the output lacks");
   add_mesh_path(command, options.mesh_paths);
