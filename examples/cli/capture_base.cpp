@@ -39,14 +39,19 @@ BaseTopics topics_of(const std::vector<std::string>& given) {
   BaseTopics topics;
   for (const std::string& text : given) {
     const std::size_t equals = text.find('=');
-    const std::string key = text.substr(0, equals), name = text.substr(std::min(equals, text.size() - 1) + 1);
+    const std::string key = text.substr(0, equals),
+                      name = text.substr(std::min(equals, text.size() - 1) + 1);
     if (equals == std::string::npos || name.empty()) {
       throw InputError("--topic: '" + text + "' is not KEY=NAME");
     }
-    if (key == "odom") topics.odom = name;
-    else if (key == "scan") topics.scans = {name};
-    else if (key == "commands") topics.commands = name;
-    else if (key == "imu" || key == "wheels" || key == "pose") topics.others.push_back(name);
+    if (key == "odom")
+      topics.odom = name;
+    else if (key == "scan")
+      topics.scans = {name};
+    else if (key == "commands")
+      topics.commands = name;
+    else if (key == "imu" || key == "wheels" || key == "pose")
+      topics.others.push_back(name);
     else {
       const std::vector<std::string> keys = {"odom", "scan", "commands", "imu", "wheels", "pose"};
       throw InputError(fmt::format("--topic: '{}' is not a key{}", key, did_you_mean(key, keys)));
@@ -72,8 +77,7 @@ void follow(RosBase& base, const CaptureOptions& options) {
   const auto began = Clock::now();
   while (!Interruption::is_asked()) {
     base.record(std::chrono::milliseconds(50));
-    if (options.seconds &&
-        Clock::now() - began > std::chrono::duration<double>(*options.seconds)) {
+    if (options.seconds && Clock::now() - began > std::chrono::duration<double>(*options.seconds)) {
       return;
     }
     if (!options.seconds && waits && enter_is_pressed()) return;
@@ -92,9 +96,9 @@ std::string run(RosBase& base, const CaptureOptions& options) {
   driving.speed *= options.velocity;
   if (options.distance) driving.distance = *options.distance;
   say("driving: keep clear of the base; Ctrl-C stops it\n");
-  const std::string why =
-      drive_base(base, driving, [] { return Interruption::is_asked(); },
-                 [](const std::string& line) { say("  {}\n", line); });
+  const std::string why = drive_base(
+      base, driving, [] { return Interruption::is_asked(); },
+      [](const std::string& line) { say("  {}\n", line); });
   return why == "interrupted" ? "" : why;
 }
 
@@ -102,7 +106,8 @@ std::string run(RosBase& base, const CaptureOptions& options) {
 
 bool is_base_config(const std::string& path) {
   try {
-    for (const detail::YamlNode& document : detail::parse_yaml(detail::read_text_file(path), path)) {
+    for (const detail::YamlNode& document :
+         detail::parse_yaml(detail::read_text_file(path), path)) {
       const detail::YamlNode* blocks = document.is_map() ? document.find("error_blocks") : nullptr;
       if (blocks == nullptr) continue;
       for (const detail::YamlNode& block : blocks->items) {
@@ -147,7 +152,8 @@ int capture_base(const CaptureOptions& options) {
   }
   bag.finish(existing_at(options.output));
   for (const auto& [topic, count] : base.received()) {
-    say("{}: {} of {}\n", options.output, counted(static_cast<std::size_t>(count), "message"), topic);
+    say("{}: {} of {}\n", options.output, counted(static_cast<std::size_t>(count), "message"),
+        topic);
   }
   const bool is_interrupted = Interruption::is_asked();
   if (is_interrupted || !lost.empty()) {

@@ -838,12 +838,12 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
   command.add_option("--velocity", options.velocity, "speed, as a fraction of normal")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
-  command.add_flag("--drive", options.drive,
-                   "with the configuration of a mobile base: command it to turn in place, and ahead and "
-                   "back in front of a wall (1.5 rad/s and 0.2 m/s at most, times --velocity); "
-                   "without it, you drive");
-  command
-      .add_option("--distance", options.distance, "of these runs ahead, default: 1")
+  command.add_flag(
+      "--drive", options.drive,
+      "with the configuration of a mobile base: command it to turn in place, and ahead and "
+      "back in front of a wall (1.5 rad/s and 0.2 m/s at most, times --velocity); "
+      "without it, you drive");
+  command.add_option("--distance", options.distance, "of these runs ahead, default: 1")
       ->type_name("METRES");
   command
       .add_option("--seconds", options.seconds,
@@ -852,9 +852,10 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
       ->excludes("--drive")
       ->type_name("S");
   command
-      .add_option("--topic", options.topics,
-                  "a topic of a base: odom=, scan=, commands= (default: /odom, /base_scan or /scan, "
-                  "/cmd_vel), imu=, wheels= or pose=")
+      .add_option(
+          "--topic", options.topics,
+          "a topic of a base: odom=, scan=, commands= (default: /odom, /base_scan or /scan, "
+          "/cmd_vel), imu=, wheels= or pose=")
       ->allow_extra_args(false)
       ->type_name("KEY=NAME");
   command.add_flag("--resume", options.resume,

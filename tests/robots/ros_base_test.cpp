@@ -48,8 +48,9 @@ class RosBaseTest : public testing::TestWithParam<std::string> {
     return *base_;
   }
   /// What a drive says at its end.
-  std::string drive(const BaseDriving& driving = kFast,
-                    const std::function<bool()>& is_interrupted = [] { return false; }) {
+  std::string drive(
+      const BaseDriving& driving = kFast,
+      const std::function<bool()>& is_interrupted = [] { return false; }) {
     return drive_base(*base_, driving, is_interrupted,
                       [this](const std::string& line) { said_.push_back(line); });
   }
@@ -69,9 +70,10 @@ INSTANTIATE_TEST_SUITE_P(Encodings, RosBaseTest, testing::Values("ros1", "cdr"))
 TEST_P(RosBaseTest, RecordsWithoutACommand) {
   RosBase& base = start();
   base.record(milliseconds(300));
-  EXPECT_THAT(recorded_, AllOf(Contains("/odom nav_msgs/Odometry"), Contains("/imu sensor_msgs/Imu"),
-                               Contains("/base_scan sensor_msgs/LaserScan"),
-                               Contains("/joint_states sensor_msgs/JointState")));
+  EXPECT_THAT(recorded_,
+              AllOf(Contains("/odom nav_msgs/Odometry"), Contains("/imu sensor_msgs/Imu"),
+                    Contains("/base_scan sensor_msgs/LaserScan"),
+                    Contains("/joint_states sensor_msgs/JointState")));
   EXPECT_GT(base.received().at("/odom"), 5);
   EXPECT_NEAR(base.ahead()->nearest, 3.0, 1e-6);
   EXPECT_THAT(commands(), IsEmpty());
@@ -99,9 +101,10 @@ TEST_P(RosBaseTest, DrivesTurnsAndStraightRunsAndStops) {
 TEST_P(RosBaseTest, DoesNotDriveIntoAWall) {
   start(R"({"wall": 1.2})");
   EXPECT_EQ(drive(), "");
-  EXPECT_THAT(said_.front(),
-              HasSubstr("no straight runs: the nearest ahead is at 1.20 m, and a run of 1.00 m needs "
-                        "1.40 m up to a wall"));
+  EXPECT_THAT(
+      said_.front(),
+      HasSubstr("no straight runs: the nearest ahead is at 1.20 m, and a run of 1.00 m needs "
+                "1.40 m up to a wall"));
   for (const auto& command : commands()) EXPECT_EQ(command[0], 0.0);
 }
 

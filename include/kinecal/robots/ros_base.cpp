@@ -51,8 +51,8 @@ class RosBase::State {
   void take(const std::string& topic) {
     for (const detail::BridgeMessage& message : bridge.take(topic, Clock::now())) {
       const MessageFields fields = message.fields();
-      const auto since = std::chrono::system_clock::now().time_since_epoch() -
-                         (Clock::now() - message.arrival);
+      const auto since =
+          std::chrono::system_clock::now().time_since_epoch() - (Clock::now() - message.arrival);
       ++received[topic];
       record_(topic, message.type,
               std::chrono::duration_cast<std::chrono::nanoseconds>(since).count(), fields);
@@ -153,7 +153,8 @@ struct DrivenRun {
 
   [[nodiscard]] double speed() const { return std::abs(turn != 0.0 ? turn : ahead); }
   [[nodiscard]] std::string text() const {
-    if (turn != 0.0) return fmt::format("a turn to the {} at {:.2f} rad/s", turn > 0 ? "left" : "right", speed());
+    if (turn != 0.0)
+      return fmt::format("a turn to the {} at {:.2f} rad/s", turn > 0 ? "left" : "right", speed());
     return fmt::format("{:.2f} m {} at {:.2f} m/s", amount, ahead > 0 ? "ahead" : "back", speed());
   }
 };
@@ -167,9 +168,9 @@ struct StopsAtEnd {
   RosBase& base;
 };
 
-class BaseDriver {
+class RunDriver {
  public:
-  BaseDriver(RosBase& base, const BaseDriving& driving, const std::function<bool()>& interrupted)
+  RunDriver(RosBase& base, const BaseDriving& driving, const std::function<bool()>& interrupted)
       : base_(base), driving_(driving), is_interrupted_(interrupted) {}
 
   /// How far the base went, metres or radians.
@@ -199,7 +200,8 @@ class BaseDriver {
       why = why_stop(run);
       if (why.empty() && Clock::now() - began > std::chrono::duration<double>(limit)) {
         why = fmt::format(
-            "after {:.0f} s, the base has gone {:.2f} of {:.2f} {}: does something else command it, "
+            "after {:.0f} s, the base has gone {:.2f} of {:.2f} {}: does something else command "
+            "it, "
             "or is it locked?",
             limit, gone(run), run.amount, run.turn != 0.0 ? "rad" : "m");
       }
@@ -249,7 +251,7 @@ std::string drive_base(RosBase& base, const BaseDriving& driving,
     if (!(positive > 0.0)) throw std::invalid_argument("speeds and distances must be positive");
   }
   const detail::StopsAtEnd stops(base);
-  detail::BaseDriver driver(base, driving, is_interrupted);
+  detail::RunDriver driver(base, driving, is_interrupted);
   base.command(0.0, 0.0);  // ROS loses what is published before others know of the publisher
   for (const auto end = Clock::now() + driving.rest; Clock::now() < end || !base.odometry();) {
     base.record(detail::kCommandPeriod);
@@ -266,11 +268,12 @@ std::string drive_base(RosBase& base, const BaseDriving& driving,
       for (const double ahead : {speed, -speed}) runs.push_back({ahead, 0.0, driving.distance});
     }
   } else {
-    say(base.ahead() ? fmt::format("no straight runs: the nearest ahead is at {:.2f} m, and a run of "
-                                   "{:.2f} m needs {:.2f} m up to a wall",
-                                   base.ahead()->nearest, driving.distance,
-                                   driving.distance + driving.least_range)
-                     : "no straight runs: there is no scan that shows what is ahead");
+    say(base.ahead()
+            ? fmt::format("no straight runs: the nearest ahead is at {:.2f} m, and a run of "
+                          "{:.2f} m needs {:.2f} m up to a wall",
+                          base.ahead()->nearest, driving.distance,
+                          driving.distance + driving.least_range)
+            : "no straight runs: there is no scan that shows what is ahead");
   }
   double back = 0.0;  // what a run ahead went: the run back goes no farther
   for (detail::DrivenRun& run : runs) {

@@ -26,11 +26,12 @@ namespace kinecal {
 
 /// Topics of a base.  Those that the bridge does not offer are silent.
 struct BaseTopics {
-  std::string odom = "/odom";         ///< nav_msgs/Odometry
-  std::string commands = "/cmd_vel";  ///< geometry_msgs/Twist
-  std::vector<std::string> scans = {"/base_scan", "/scan"};             ///< sensor_msgs/LaserScan
-  std::vector<std::string> others = {"/imu", "/imu1/imu", "/imu/data",  ///< any type: recorded
-                                     "/joint_states", "/tf_static", "/robot_description"};
+  std::string odom = "/odom";                                ///< nav_msgs/Odometry
+  std::string commands = "/cmd_vel";                         ///< geometry_msgs/Twist
+  std::vector<std::string> scans = {"/base_scan", "/scan"};  ///< sensor_msgs/LaserScan
+  std::vector<std::string> others = {
+      "/imu",          "/imu1/imu",  "/imu/data",  ///< any type: recorded
+      "/joint_states", "/tf_static", "/robot_description"};
 };
 
 /// Receives each message.
@@ -86,12 +87,12 @@ class RosBase {
 
 /// How a base is driven.
 struct BaseDriving {
-  double turn = 1.5;               ///< rad/s, at most; turns are also made at a third of it
-  double speed = 0.2;              ///< m/s, at most; runs are also made at half of it
-  double distance = 1.0;           ///< of a straight run, metres
-  double turn_acceleration = 2.0;  ///< rad/s^2
-  double acceleration = 0.5;       ///< m/s^2
-  double least_range = 0.4;        ///< metres: the base does not go nearer to what is ahead
+  double turn = 1.5;                       ///< rad/s, at most; turns are also made at a third of it
+  double speed = 0.2;                      ///< m/s, at most; runs are also made at half of it
+  double distance = 1.0;                   ///< of a straight run, metres
+  double turn_acceleration = 2.0;          ///< rad/s^2
+  double acceleration = 0.5;               ///< m/s^2
+  double least_range = 0.4;                ///< metres: the base does not go nearer to what is ahead
   std::chrono::milliseconds rest{1200};    ///< between runs
   std::chrono::milliseconds silence{500};  ///< of odometry or scans: the base is stopped
 };

@@ -117,8 +117,8 @@ TEST(InitialBase, ColumnsHaveTheirMeaningByName) {
   EXPECT_THAT(refused("enc_l,enc_r\n1,2\n2,3\n"),
               HasSubstr("d.csv: no columns of what shows how the base moved"));
   EXPECT_THAT(refused("x,y,theta\n1,2,3\n2,3,4\n"), HasSubstr("d.csv: no columns of a drive"));
-  EXPECT_THAT(refused("enc_l,enc_r,x,y,theta_deg\n1,2,1,2,30\n1,2,1,2,40\n"),
-              HasSubstr("column 'theta_deg' is in degrees; a drive has radians"));
+  EXPECT_THAT(base_columns("enc_l,enc_r,x,y,theta_deg\n1,2,1,2,30\n1,2,1,2,40\n", "d.csv"),
+              HasSubstr("  track_yaw: {column: theta_deg, unit: degrees}\n"));
   EXPECT_THAT(refused("odom_x,odom_y,odom_yaw,x,y,yaw\n0,0,3.1,0,0,0\n0,0,-3.1,0,0,0\n"),
               HasSubstr("column 'odom_yaw' jumps by a full turn in row 2"));
 }

@@ -200,22 +200,28 @@ template <class Has>
   return text;
 }
 
-/// Rejects what a condition cannot have.
+/// Rejects an angle that does not count turns.
 void check_column(const TableColumn& column, const std::string& condition,
                   const std::string& file) {
-  const std::string place = fmt::format("{}: column '{}'", file, column.name);
-  if (column.unit == NamedUnit::degrees || column.unit == NamedUnit::millimetres) {
-    throw InputError(fmt::format("{} is in {}; a drive has {}: convert it", place,
-                                 column.unit == NamedUnit::degrees ? "degrees" : "millimetres",
-                                 column.unit == NamedUnit::degrees ? "radians" : "metres"));
-  }
   if (condition != "odom_yaw" && condition != "gyro_yaw") return;
+  const bool is_degrees = column.unit == NamedUnit::degrees;
+  const double turn = is_degrees ? 360.0 : 2.0 * std::numbers::pi;
   for (std::size_t i = 1; i < column.values.size(); ++i) {
     const double by = column.values[i] - column.values[i - 1];
-    if (!(std::abs(std::abs(by) - 2.0 * std::numbers::pi) < 0.5)) continue;
-    throw InputError(fmt::format("{} jumps by a full turn in row {}; {} counts turns: unwrap it",
-                                 place, i + 1, condition));
+    if (!(std::abs(std::abs(by) - turn) < 0.1 * turn)) continue;
+    throw InputError(
+        fmt::format("{}: column '{}' jumps by a full turn in row {}; {} counts turns: "
+                    "unwrap it",
+                    file, column.name, i + 1, condition));
   }
+}
+
+/// A column, with its unit if it is none of a condition.
+[[nodiscard]] std::string column_text(const TableColumn& column) {
+  const std::string name = name_to_yaml(column.name);
+  if (column.unit == NamedUnit::degrees) return "{column: " + name + ", unit: degrees}";
+  if (column.unit == NamedUnit::millimetres) return "{column: " + name + ", unit: millimetres}";
+  return name;
 }
 
 }  // namespace
@@ -303,7 +309,7 @@ std::string base_columns(std::string_view text, const std::string& file) {
     const TableColumn& column = table.columns[c];
     const std::string condition =
         column.is_number && !column.per_second ? base_condition(column.name) : "";
-    if (condition.empty() || !columns.emplace(condition, column.name).second) {
+    if (condition.empty() || !columns.emplace(condition, column_text(column)).second) {
       unused.push_back(column.name);
     } else {
       check_column(column, condition, file);
@@ -323,7 +329,7 @@ std::string base_columns(std::string_view text, const std::string& file) {
   }
   std::string conditions;
   for (const auto& [condition, column] : columns) {
-    conditions += fmt::format("  {}: {}\n", condition, name_to_yaml(column));
+    conditions += fmt::format("  {}: {}\n", condition, column);
   }
   const std::map<char, const char*> separators = {
       {',', "comma"}, {';', "semicolon"}, {'\t', "tab"}, {' ', "space"}};

@@ -69,8 +69,8 @@ struct RecordedBase {
 /// The text of a columns.yaml for a table of a drive, by the names of its columns; what is not used is said in a comment.
 /// @param table  the text
 /// @param file   its name, in messages
-/// @throws InputError  "file: ...": without a drive, or without what shows how the base moved; a column in degrees or
-///                     millimetres; an angle of the odometry that jumps by a full turn
+/// @throws InputError  "file: ...": without a drive, or without what shows how the base moved; an angle of the odometry that
+///                     jumps by a full turn
 [[nodiscard]] std::string base_columns(std::string_view table, const std::string& file);
 
 }  // namespace kinecal

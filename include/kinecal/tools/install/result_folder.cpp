@@ -35,7 +35,7 @@ namespace {
 }
 
 /// The entries of a map that are numbers.
-[[nodiscard]] std::map<std::string, double> numbers_in(const YamlNode& map) {
+[[nodiscard]] std::map<std::string, double> number_entries(const YamlNode& map) {
   std::map<std::string, double> numbers;
   for (std::size_t i = 0; i < map.keys.size(); ++i) {
     const auto value = config_number(map.items[i]);
@@ -167,8 +167,8 @@ ResultFolder read_result_folder(const std::filesystem::path& folder) {
       urdf_path = folder / item.text;
     } else if (key == "base") {
       result.base = detail::named_file(folder, path.string(), item);
-      result.base_values =
-          detail::numbers_in(detail::yaml_map(result.base.content, (folder / item.text).string()));
+      result.base_values = detail::number_entries(
+          detail::yaml_map(result.base.content, (folder / item.text).string()));
     } else if (auto camera = detail::camera_key(key)) {
       camera->file = detail::named_file(folder, path.string(), item);
       camera->name = detail::camera_name(camera->file.content, folder / item.text);
