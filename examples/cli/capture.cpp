@@ -432,6 +432,11 @@ void print_session(const Session& session, std::size_t before) {
 }  // namespace
 
 int capture(const CaptureOptions& options) {
+  if (is_base_config(options.config)) return capture_base(options);
+  if (options.drive || options.distance || options.seconds || !options.topics.empty()) {
+    throw InputError("--drive, --distance, --seconds and --topic are of a mobile base: " +
+                     options.config + " has no error block of one");
+  }
   check_options(options);
   Diagnostics diagnostics;
   const CaptureConfig config = read_capture_config(options.config, diagnostics);

@@ -113,8 +113,14 @@ struct InitOptions {
   std::string form;      ///< of these poses; empty: by the names of columns
   bool inverse = false;  ///< they are those of the base in the flange
   std::string corners, target_points;  ///< tables beside them; empty: photographs
-  bool force = false;                  ///< replace a file
+  std::string drive, seen, sensor;     ///< of a base: see tools/init/initial_base.hpp; empty: ask
+  std::optional<double> wheel_radius, track_width, wheelbase,
+      gyro_scale;      ///< of it, metres; a factor
+  bool force = false;  ///< replace a file
 };
+
+/// Writes the configuration of a mobile base; of a table, columns.yaml, too, and without a URDF one of the base alone.
+int init_base(const InitOptions& options);
 
 /// Writes a URDF, columns.yaml, a configuration and, for photographs, capture.yaml from poses of a
 /// flange.
@@ -344,7 +350,17 @@ struct CaptureOptions {
   bool manual = false;                       ///< a person moves the robot
   bool resume = false;                       ///< go on with the samples of the output
   bool force = false;                        ///< replace results
+  bool drive = false;                        ///< a base: command it
+  std::vector<std::string> topics = {};      ///< of a base: KEY=NAME
+  std::optional<double> distance = {};       ///< of its straight runs, metres
+  std::optional<double> seconds = {};        ///< how long it is recorded; nullopt: until Enter
 };
+
+/// True if a configuration has an error block of a mobile base.
+[[nodiscard]] bool is_base_config(const std::string& path);
+
+/// Records the drive of a mobile base, and drives it if that is asked for.
+int capture_base(const CaptureOptions& options);
 
 /// Moves a robot through poses and records what its finders see.
 int capture(const CaptureOptions& options);

@@ -68,12 +68,16 @@ std::string ask_links(const Robot& robot, const Question& question) {
 
 /// Why a word is not a target of this robot; empty if it is.
 std::string check_target(const Robot& robot, const InitOptions& options, const std::string& word) {
+  if (word == kBaseTarget) {
+    return "base is alone: it does not go into one configuration with other targets";
+  }
   if (const auto target = init_target(word)) {
     return why_no_target(robot, target->target, first_of(robot, options.arm),
                          first_of(robot, options.camera));
   }
   std::vector<std::string_view> words;
   for (const InitTargetWord& known : kInitTargets) words.push_back(known.word);
+  words.push_back(kBaseTarget);
   return fmt::format("'{}' is not a target{}; choose one of {}", word, did_you_mean(word, words),
                      init_target_words());
 }
@@ -88,9 +92,13 @@ void ask_targets(const Robot& robot, InitOptions& options) {
     if (!check_target(robot, options, word).empty()) continue;
     question.choices.push_back({word, std::string(known.says)});
   }
+  question.choices.push_back(
+      {std::string(kBaseTarget), "a mobile base: what it reports of its motion"});
   if (!has_camera) say("No link of the URDF looks like a camera.\n");
-  words = {
-      ask(question, [&](const std::string& word) { return check_target(robot, options, word); })};
+  words = {ask(question, [&](const std::string& word) {
+    return word == kBaseTarget ? "" : check_target(robot, options, word);
+  })};
+  if (words.front() == kBaseTarget) return;
   const InitTarget target = init_target(words.front())->target;
   if (!needs_camera(target) || target == InitTarget::ground || !on_a_terminal() ||
       options.camera_type == "camera2d") {
@@ -411,6 +419,12 @@ std::string answers_text(const InitOptions& options, const InitAnswers& found) {
 std::vector<InitAnswers> answer_from_samples(const Robot& robot, const InitOptions& options) {
   check_given(robot, options);
   const std::vector<Sample> samples = read_from(robot, options);
+  const auto is_drive = [](const Sample& sample) {
+    return sample.observations.empty() && sample.joint_names.empty() && !sample.conditions.empty();
+  };
+  if (!samples.empty() && std::all_of(samples.begin(), samples.end(), is_drive)) {
+    throw InputError("--from: these samples are of the drive of a base; give --target base");
+  }
   InitAnswers given;
   given.base = options.base;
   given.arm = options.arm;
@@ -493,9 +507,9 @@ struct Configured {
   std::string text;                  ///< of the configuration
 };
 /// @param stands  joints on which several robots stand
+/// @param given   before questions
 Configured configure(const Robot& robot, const std::vector<std::string>& stands,
-                     InitOptions options) {
-  const InitOptions given = options;
+                     const InitOptions& given, InitOptions options) {
   try {
     Configured all{
         options.from.empty() ? answer(robot, options) : answer_from_samples(robot, options), ""};
@@ -637,6 +651,11 @@ std::vector<std::string> stands_of(const std::string& urdf_text, const std::stri
 
 int init(const InitOptions& given) {
   if (given.targets == std::vector<std::string>{"magnetometer"}) return init_magnetometer(given);
+  const auto is_base = [](const InitOptions& options) {
+    const std::vector<std::string>& words = options.targets;
+    return std::find(words.begin(), words.end(), kBaseTarget) != words.end();
+  };
+  if (is_base(given)) return init_base(given);
   if (!given.poses.empty()) return init_hand_eye(given);
   if (!given.cameras.empty()) return init_cameras(given);
   if (!given.corners.empty()) throw InputError("--corners goes with --poses or --cameras");
@@ -662,7 +681,13 @@ int init(const InitOptions& given) {
   }
   const std::string urdf_text = robots.empty() ? read_urdf_text(options.urdf) : joined_urdf(robots);
   const Robot robot = parse_urdf(urdf_text, options.urdf);
-  const Configured made = configure(robot, stands_of(urdf_text, options.urdf), options);
+  const InitOptions before = options;
+  if (options.from.empty() && options.targets.empty()) {
+    check_given(robot, options);
+    ask_targets(robot, options);
+    if (is_base(options)) return init_base(options);
+  }
+  const Configured made = configure(robot, stands_of(urdf_text, options.urdf), before, options);
   check();  // the file may have appeared meanwhile
   const InitAnswers& answers = made.answers.front();
   if (!robots.empty()) {

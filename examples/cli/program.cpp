@@ -53,6 +53,7 @@ std::vector<std::string> target_words() {
   std::vector<std::string> words;
   for (const kinecal::InitTargetWord& target : kinecal::kInitTargets)
     words.emplace_back(target.word);
+  words.emplace_back(kinecal::kBaseTarget);
   return words;
 }
 
@@ -408,8 +409,8 @@ void add_init(CLI::App& command, InitOptions& options) {
           "also goes with another: leds,ground; robot (its own surface); or what the tip touches, "
           "with "
           "nothing but joints recorded: point, tool, sockets, plane, line, sphere, bar, distance; "
-          "grip (one thing in both hands); gravity (an accelerometer); or magnetometer, from "
-          "recorded readings (--from)")
+          "grip (one thing in both hands); gravity (an accelerometer); base (a mobile base: its "
+          "wheels, odometry and gyroscope); or magnetometer, from recorded readings (--from)")
       ->delimiter(',')
       ->type_name(one_of("TARGET", target_words()));
   command
@@ -460,6 +461,28 @@ void add_init(CLI::App& command, InitOptions& options) {
       .add_option("--robot-camera-name", options.camera_name,
                   "sensor_name of the camera in the samples, default: 'camera'")
       ->type_name("NAME");
+  const auto add_of_base = [&](const char* name, auto& value, const char* says, const char* type) {
+    command.add_option(name, value, says)->type_name(type);
+  };
+  add_of_base("--drive", options.drive,
+              "odometry (as reported), differential, mecanum or tricycle (positions of wheels); "
+              "default: what the recording has",
+              "DRIVE");
+  add_of_base("--seen", options.seen,
+              "what shows how the base moved: wall (in scans) or pose (tracked)", "WHAT");
+  add_of_base(
+      "--sensor", options.sensor,
+      "link of the laser or of what is tracked: its place on the base is that of the URDF or "
+      "tf; default: the frame of the scans",
+      "LINK");
+  add_of_base("--wheel-radius", options.wheel_radius,
+              "nominal; metres a unit of the positions, such as a tick; default: of the URDF",
+              "METRES");
+  add_of_base("--track-width", options.track_width,
+              "nominal, that of the driver; default: of the URDF", "METRES");
+  add_of_base("--wheelbase", options.wheelbase, "nominal; default: of the URDF", "METRES");
+  add_of_base("--gyro-scale", options.gyro_scale,
+              "of the gyroscope's driver, for 'install'; default: not known", "FACTOR");
   command
       .add_option("--base", options.base,
                   "link in which measurements are compared; default: the root of the URDF")
@@ -485,9 +508,10 @@ void add_simulate(CLI::App& command, SimulateOptions& options) {
           "--target", options.target,
           "checkerboard (default, apriltag if this build does not find it), apriltag, aprilgrid "
           "(Kalibr's), ground, robot (its own meshes: clouds; masks if the scene's camera is a "
-          "camera2d), or leds for a session")
+          "camera2d), leds for a session, or base: a table of the drive of a mobile base")
       ->excludes(scene)
-      ->check(one_word_of({"checkerboard", "apriltag", "aprilgrid", "ground", "robot", "leds"}));
+      ->check(one_word_of(
+          {"checkerboard", "apriltag", "aprilgrid", "ground", "robot", "leds", "base"}));
   add_mesh_path(command, options.mesh_paths);
   command.add_option("--poses", options.poses, "number of images, default: 30")
       ->check(CLI::Range(1, 9999))
@@ -826,6 +850,26 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
   command.add_option("--velocity", options.velocity, "speed, as a fraction of normal")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
+  command.add_flag(
+      "--drive", options.drive,
+      "with the configuration of a mobile base: command it to turn in place, and ahead and "
+      "back in front of a wall (1.5 rad/s and 0.2 m/s at most, times --velocity); "
+      "without it, you drive");
+  command.add_option("--distance", options.distance, "of these runs ahead, default: 1")
+      ->type_name("METRES");
+  command
+      .add_option("--seconds", options.seconds,
+                  "how long a base is recorded that you drive; default: until Enter")
+      ->check(CLI::PositiveNumber)
+      ->excludes("--drive")
+      ->type_name("S");
+  command
+      .add_option(
+          "--topic", options.topics,
+          "a topic of a base: odom=, scan=, commands= (default: /odom, /base_scan or /scan, "
+          "/cmd_vel), imu=, wheels= or pose=")
+      ->allow_extra_args(false)
+      ->type_name("KEY=NAME");
   command.add_flag("--resume", options.resume,
                    "continue an interrupted session: record the poses that the output lacks");
   add_mesh_path(command, options.mesh_paths);

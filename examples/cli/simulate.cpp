@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "commands.hpp"
@@ -10,7 +11,11 @@
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/study/seeded_random.hpp"
+#include "kinecal/study/simulated_base.hpp"
 #include "kinecal/surface/robot_surface.hpp"
+#include "kinecal/tools/init/init_answers.hpp"
+#include "kinecal/tools/init/initial_base.hpp"
 #include "kinecal/tools/simulation/photographs.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
@@ -85,11 +90,77 @@ std::string next_of(const SimulateOptions& options, const SimulationPlan& plan) 
          " && " + calibrate;
 }
 
+/// A base with errors of 2 %, whose wheels slip now and then.
+/// @param sizes  nominal; those that are not known are Fetch's
+SimulatedBase wrong_base(const BaseSizes& sizes, std::uint64_t seed) {
+  SeededRandom random(seed);
+  SimulatedBase base;
+  if (sizes.wheel_radius > 0.0) base.drive.wheel_radius = sizes.wheel_radius;
+  if (sizes.track_width > 0.0) base.drive.track_width = sizes.track_width;
+  for (double* scale : {&base.track_width_scale, &base.left_rollout_scale,
+                        &base.right_rollout_scale, &base.imu_scale}) {
+    *scale += 0.02 * random.normal();
+  }
+  base.imu_bias = 0.002 * random.normal();
+  for (double& at : base.mount) at += 0.01 * random.normal();
+  base.slip_chance = 0.01;
+  return base;
+}
+
+/// A table: a row for each sample, empty cells where the wall is not seen.
+std::string table_of(const std::vector<Sample>& samples) {
+  std::string text;
+  for (const auto& [name, value] : samples.front().conditions) {
+    text += (text.empty() ? "" : ",") + name;
+  }
+  for (const Sample& sample : samples) {
+    std::string row;
+    for (const auto& [name, value] : sample.conditions) {
+      row += (row.empty() ? "" : ",") + (std::isnan(value) ? "" : fmt::format("{:.9g}", value));
+    }
+    text += "\n" + row;
+  }
+  return text + "\n";
+}
+
+/// A drive of a base on two wheels, as a table.
+int simulate_drive(const SimulateOptions& options) {
+  const std::filesystem::path folder = options.output;
+  const std::string urdf = read_urdf_text(options.urdf);
+  const Robot robot = parse_urdf(urdf, options.urdf);
+  const auto seed = static_cast<std::uint64_t>(std::max(1, options.seed));
+  const SimulatedBase base =
+      wrong_base(sizes_of_urdf(robot, urdf, base_link_of(robot), "differential"), seed);
+  std::vector<BaseRun> runs = turns_and_straight_runs();
+  for (const double turn : {0.6, -0.6, 0.3, -0.3}) runs.push_back({0.4, turn, 6.0});
+  const BaseRecording drive = simulate_base(base, runs, seed);
+  const std::string truth = fmt::format(
+      "track_width_scale: {}\nleft_rollout_scale: {}\nright_rollout_scale: {}\nimu_scale: {}\n"
+      "imu_bias: {}\nx: {}\ny: {}\nyaw: {}\n",
+      base.track_width_scale, base.left_rollout_scale, base.right_rollout_scale, base.imu_scale,
+      base.imu_bias, base.mount[0], base.mount[1], base.mount[2]);
+  check_folder(folder, options.force);
+  OutputFolder(folder).write(
+      {{"robot.urdf", urdf}, {"drive.csv", table_of(drive.samples)}, {"truth.yaml", truth}});
+  say("{}: {} samples of {} runs of a base on two wheels; {} slips; truth.yaml has its errors\n",
+      folder.string(), drive.samples.size(), runs.size(), drive.slipped.size());
+  const auto file = [&](const char* name) { return (folder / name).string(); };
+  say("next: {}\n", ShellCommand{"kinecal", "init", "--target", "base", "--drive", "differential"}
+                        .add_option("--urdf", {file("robot.urdf")})
+                        .add_option("--from", {file("drive.csv")})
+                        .add_option("--wheel-radius", {fmt::format("{}", base.drive.wheel_radius)})
+                        .add_option("--track-width", {fmt::format("{}", base.drive.track_width)})
+                        .add_option("--output", {file("base.yaml")})
+                        .str());
+  return kDone;
+}
+
 }  // namespace
 
 int simulate(const SimulateOptions& options) {
   const std::filesystem::path folder = options.output;
   check_folder(folder, options.force);
+  if (options.target == kBaseTarget) return simulate_drive(options);
   const Robot robot = read_urdf(options.urdf);
   Diagnostics diagnostics;
   const std::string target = target_of(options), urdf = detail::read_text_file(options.urdf);

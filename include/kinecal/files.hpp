@@ -52,6 +52,7 @@
 #include "kinecal/files/recordings/accelerometer_messages.hpp"
 #include "kinecal/files/recordings/bag_output.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
+#include "kinecal/files/recordings/base_conditions.hpp"
 #include "kinecal/files/recordings/base_messages.hpp"
 #include "kinecal/files/recordings/convert.hpp"
 #include "kinecal/files/recordings/fixed_frames.hpp"

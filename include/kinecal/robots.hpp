@@ -7,5 +7,6 @@
 #include "kinecal/robots/child_process.hpp"
 #include "kinecal/robots/pipe_robot.hpp"
 #include "kinecal/robots/ros_action.hpp"
+#include "kinecal/robots/ros_base.hpp"
 #include "kinecal/robots/ros_robot.hpp"
 #include "kinecal/robots/socket/web_socket.hpp"

@@ -25,6 +25,7 @@
 #include "kinecal/tools/init/hand_eye.hpp"
 #include "kinecal/tools/init/hand_eye_fit.hpp"
 #include "kinecal/tools/init/init_answers.hpp"
+#include "kinecal/tools/init/initial_base.hpp"
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
 #include "kinecal/tools/init/magnetometer_config.hpp"

@@ -12,6 +12,7 @@
 #include "kinecal/config/registry.hpp"
 #include "kinecal/files/results/base_file.hpp"
 #include "kinecal/procedure/calibrate_robot.hpp"
+#include "kinecal/procedure/calibrated_files.hpp"
 #include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/study/simulated_base.hpp"
 #include "support/robots.hpp"
@@ -106,6 +107,25 @@ TEST(CalibrateBase, TheFileHasUpstreamsKeys) {
                                   {{rollout, 0.00123}}),
             "track_width_scale: 1.02\nrollout_scale: 0.98  # +- 0.0012\nimu_scale: "
             "0.975\nimu_bias: 0.0\n");
+  // And those of ROS 1, which Fetch's installer reads: what the driver should have.
+  EXPECT_EQ(base_calibration_yaml(calibrated.setup.calibration, calibrated.result.table, {},
+                                  {{"base", 0.37476}, {"imu", 0.001221729}}),
+            "track_width_scale: 1.02\nrollout_scale: 0.98\nodom: 0.390056326531\nimu_scale: "
+            "0.975\nimu_bias: 0.0\nimu: 0.001191185775\n");
+}
+
+TEST(CalibrateBase, WhatTheDriverHasIsOfTheConfiguration) {
+  CalibrationSetup setup =
+      setup_of("base_track_width_scale",
+               "- {name: base, type: odometry_to_wall, x: 0.23, track_width: 0.37476, "
+               "translation_scale: 500, rotation_scale: 500}\n",
+               simulate_base(SimulatedBase{}, turns_and_straight_runs(), 5).samples);
+  setup.urdf_text = "<robot name=\"r\"><link name=\"base_link\"/></robot>";
+  std::string text;
+  for (const OutputFile& file : calibrated_files(calibrate_robot(std::move(setup)))) {
+    if (file.name == "base_calibration.yaml") text = file.content;
+  }
+  EXPECT_THAT(text, HasSubstr("\nodom: 0.37"));
 }
 
 TEST(CalibrateBase, SizesArePositive) {

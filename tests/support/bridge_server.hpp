@@ -56,10 +56,12 @@ class BridgeServer {
 
   [[nodiscard]] const std::string& url() const { return url_; }
 
-  /// Makes a fault of server.mjs, such as {"fault": "close"}; returns when it was made.
-  void make(const std::string& fault) {
+  /// Makes a fault of server.mjs, such as {"fault": "close"}; returns when it was made, with what it printed.
+  std::string make(const std::string& fault) {
     process_.write_line(fault, kStart);
-    if (!process_.read_line(kStart)) throw std::runtime_error("no answer to " + fault);
+    const auto line = process_.read_line(kStart);
+    if (!line) throw std::runtime_error("no answer to " + fault);
+    return *line;
   }
 
   /// Ends the server without a goodbye.

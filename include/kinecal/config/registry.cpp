@@ -95,7 +95,7 @@ template <ErrorBlock B, class Make>
   return {{"wheel_radius", 1.0}, {"wheelbase", 1.0}};
 }
 [[nodiscard]] NumberKeys numbers_of(const ReportedOdometry&) {
-  return {};
+  return {{"track_width", 0.0}};  // what the driver has; 0: not known
 }
 /// @}
 
@@ -118,7 +118,9 @@ void set_drive(const BlockConfig& block, MecanumDrive& drive) {
 void set_drive(const BlockConfig& block, TricycleDrive& drive) {
   drive = {size_of(block, "wheel_radius"), size_of(block, "wheelbase")};
 }
-void set_drive(const BlockConfig&, ReportedOdometry&) {}
+void set_drive(const BlockConfig& block, ReportedOdometry&) {
+  (void)length_of(block, "track_width");
+}
 /// @}
 
 /// The entry of a drive against what a sensor on the base saw.
@@ -135,6 +137,15 @@ template <ErrorBlock B>
     made.translation_scale = number("translation_scale");
     made.rotation_scale = number("rotation_scale");
     return made;
+  });
+}
+
+/// The entry of a gyroscope.  Its driver's scale is for base_calibration.yaml; 0: not known.
+template <ErrorBlock B>
+[[nodiscard]] BlockEntry gyro_entry() {
+  return built_in_block<B>({}, {{"gyro_scale", 0.0}}, [](const BlockConfig& block) {
+    (void)length_of(block, "gyro_scale");
+    return B{};
   });
 }
 
@@ -234,8 +245,8 @@ Registry::Registry() {
   add(detail::base_entry<TricycleToWall>());
   add(detail::base_entry<OdometryToPose>());
   add(detail::base_entry<OdometryToWall>());
-  add(built_in_block<GyroToPose>({}, {}, [](const BlockConfig&) { return GyroToPose{}; }));
-  add(built_in_block<GyroToWall>({}, {}, [](const BlockConfig&) { return GyroToWall{}; }));
+  add(detail::gyro_entry<GyroToPose>());
+  add(detail::gyro_entry<GyroToWall>());
   detail::NumberKeys of_magnetometer;
   for (const ParameterInfo& own : MagneticField::kParameters)
     of_magnetometer.emplace_back(own.name, own.initial);

@@ -14,6 +14,22 @@ namespace kinecal {
 namespace detail {
 namespace {
 
+/// What the driver of a base has, by error block.
+[[nodiscard]] std::map<std::string, double> drivers_of(const std::optional<Config>& config) {
+  std::map<std::string, double> drivers;
+  if (!config) return drivers;
+  for (const StepConfig& step : config->steps) {
+    for (const BlockConfig& block : step.error_blocks) {
+      const bool is_drive =
+          block.type.starts_with("odometry_to_") || block.type.starts_with("differential_to_");
+      if (!is_drive && !block.type.starts_with("gyro_to_")) continue;
+      const auto has = block.numbers.find(is_drive ? "track_width" : "gyro_scale");
+      if (has != block.numbers.end()) drivers.emplace(block.name, has->second);
+    }
+  }
+  return drivers;
+}
+
 /// The URDF, calibration.yaml and camera files.
 [[nodiscard]] std::vector<OutputFile> robot_files_of(const CalibratedRobot& calibrated,
                                                      ResultFileOptions options) {
@@ -26,6 +42,7 @@ namespace {
   for (const int i : findings.result.calibrated) {
     if (const auto deviation = findings.deviation(i)) options.deviations[i] = *deviation;
   }
+  options.drivers = drivers_of(setup.config);
   return result_files(setup.robot, setup.urdf_text, setup.urdf, setup.calibration, findings.result,
                       calibrated.samples, options);
 }

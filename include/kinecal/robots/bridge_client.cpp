@@ -374,12 +374,23 @@ void BridgeClient::publish(const std::string& topic, const PublishedType& type,
                           "capability clientPublish");
   }
   const auto [at, is_new] = state_->published.try_emplace(topic, state_->last_id + 1);
+  const auto& known = state_->encodings;
+  const auto takes = [&](const char* encoding) {
+    return std::find(known.begin(), known.end(), encoding) != known.end();
+  };
+  const bool is_ros2 = takes("cdr") && !takes("ros1");
   if (is_new) {
     ++state_->last_id;
-    const BridgeSchema schema{"ros1", type.name, type.definition, "ros1msg"};
+    BridgeSchema schema{"ros1", type.name, type.definition, "ros1msg"};
+    if (is_ros2) {
+      std::string ros2_type = type.name;
+      ros2_type.replace(ros2_type.find('/'), 1, "/msg/");
+      schema = {"cdr", ros2_type, type.definition, "ros2msg"};
+    }
     state_->socket->send(true, advertise_frame(at->second, topic, schema));
   }
-  const auto bytes = encode(message, parse_definition(type.name, type.definition), Encoding::ros1);
+  const auto bytes = encode(message, parse_definition(type.name, type.definition),
+                            is_ros2 ? Encoding::cdr : Encoding::ros1);
   state_->socket->send(false, publish_frame(at->second, bytes));
 }
 

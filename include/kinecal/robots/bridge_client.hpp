@@ -40,7 +40,7 @@ struct BridgeMessage {
 /// A type that a client publishes, with its definition.
 struct PublishedType {
   std::string name;        ///< "control_msgs/FollowJointTrajectoryActionGoal"
-  std::string definition;  ///< .msg text of ROS 1
+  std::string definition;  ///< .msg text: of ROS 1, or the same in both
 };
 
 /// A connection to a bridge.  Not thread-safe.  All functions throw ConnectionError with the reason
@@ -82,7 +82,7 @@ class BridgeClient {
   /// A parameter of ROS that is a text; nullopt if the bridge has none of this name, or does not tell in time.
   [[nodiscard]] std::optional<std::string> parameter(const std::string& name, Deadline deadline);
 
-  /// Publishes a ROS 1 message.
+  /// Publishes a message, in ROS 2 if the bridge takes only that.
   /// @throws ConnectionError  if the bridge does not accept messages from clients
   void publish(const std::string& topic, const PublishedType& type, const MessageFields& message);
 

@@ -33,6 +33,9 @@ class BaseDriver {
     state_.true_pose = PlanarMotion<double>::at(-0.5 * run.ahead * run.seconds, 0.0,
                                                 run.turn == 0.0 ? 0.0 : random_.uniform(-0.1, 0.1));
     of_run_ = 1.0 + base_.of_runs * random_.normal();
+    mount_ = base_.mount;
+    if (base_.mount_of_runs <= 0.0) return;
+    for (double& at : mount_) at += base_.mount_of_runs * random_.normal();
   }
   /// @returns  true if a wheel slipped
   bool step(const BaseRun& run, double seconds) {
@@ -63,7 +66,7 @@ class BaseDriver {
   }
   [[nodiscard]] Sample sample(int run) {
     const PlanarMotion<double> laser =
-        state_.true_pose * PlanarMotion<double>::at(base_.mount[0], base_.mount[1], base_.mount[2]);
+        state_.true_pose * PlanarMotion<double>::at(mount_[0], mount_[1], mount_[2]);
     constexpr double kSeen = 1.0;  // radians
     constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
     const double wall_angle = -laser.angle(), distance = base_.wall - laser.x;
@@ -91,7 +94,8 @@ class BaseDriver {
   const SimulatedBase& base_;
   SeededRandom random_;
   BaseState state_;
-  double of_run_ = 1.0;  ///< what wheels roll in this run over what they roll in the mean
+  std::array<double, 3> mount_{};  ///< in this run
+  double of_run_ = 1.0;            ///< what wheels roll in this run over what they roll in the mean
 };
 
 }  // namespace

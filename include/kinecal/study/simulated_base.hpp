@@ -31,7 +31,9 @@ struct SimulatedBase {
   double tracked_angle = 2e-3;     ///< of its angle and of that of the wall, radians
   double wall_distance = 2e-3;     ///< of the distance of the wall, metres
   double rolling = 2e-3;           ///< of a wheel's way of one metre, metres; grows with its root
-  double of_runs = 0.0;      ///< of what both wheels roll in a run, a part: the floor, the tyres
+  double of_runs = 0.0;  ///< of what both wheels roll in a run, a part: the floor, the tyres
+  /// Of where the sensor is in a run, metres and radians: how it is tracked, or how the base tilts.
+  double mount_of_runs = 0.0;
   double gyro = 5e-4;        ///< of the integral of the gyroscope's rate over a second, radians
   double slip_chance = 0.0;  ///< of a slip in a sample
   double slip = 0.05;        ///< what a wheel turns without moving the base, metres

@@ -28,6 +28,7 @@ using testing::IsEmpty;
 /// What is wrong with a bag.
 struct BagOptions {
   bool has_scans = true, has_tracked = false, has_odometry = true;
+  std::vector<std::string> wheels = {};  ///< joints
   double gyro_sign = 1.0;
   double late_imu = 0.0;  ///< stamps of the IMU behind those of the odometry, seconds
 };
@@ -84,6 +85,16 @@ void write_drive(const std::string& path, const SimulatedBase& base, const BagOp
             "odom", "nav_msgs/Odometry", at,
             fields("header", header(at, "odom"), "child_frame_id", std::string("base_link"), "pose",
                    fields("pose", pose(now.at("odom_x"), now.at("odom_y"), now.at("odom_yaw")))));
+      }
+      if (!of.wheels.empty()) {
+        std::vector<double> positions;
+        for (const std::string& wheel : of.wheels) {
+          positions.push_back(wheel.find("left") != std::string::npos ? now.at("left_wheel")
+                                                                      : now.at("right_wheel"));
+        }
+        write("joint_states", "sensor_msgs/JointState", at,
+              fields("header", header(at, ""), "name", detail::texts(of.wheels), "position",
+                     detail::numbers(positions)));
       }
       if (of.has_tracked) {
         write("tracker", "geometry_msgs/PoseStamped", at,
@@ -151,12 +162,28 @@ TEST_F(BaseDrive, ATrackedPoseNeedsNoScans) {
   EXPECT_FALSE(samples[10].conditions.contains("wall_angle"));
 }
 
+TEST_F(BaseDrive, FourWheelsAreAlsoTwo) {
+  const std::vector<Sample> samples =
+      read({.has_odometry = false,
+            .wheels = {"front_left_wheel", "front_right_wheel", "rear_left_wheel",
+                       "rear_right_wheel", "arm_joint"}});
+  EXPECT_THAT(found_.errors, IsEmpty());
+  ASSERT_GT(samples.size(), 30u);
+  const auto& of = samples.back().conditions;
+  EXPECT_EQ(of.at("left_wheel"), of.at("front_left_wheel"));
+  EXPECT_EQ(of.at("right_wheel"), of.at("rear_right_wheel"));
+  EXPECT_EQ(of.count("arm_joint"), 0u);
+  const BaseDrive drive = read_base_drive((folder_.path() / "drive.bag").string(), found_);
+  EXPECT_EQ(drive.sensor_frame, "laser_link");
+  EXPECT_EQ(drive.base_frame, "");  // it is that of the odometry
+}
+
 TEST_F(BaseDrive, WhatIsMissingIsSaid) {
   EXPECT_THAT(read({.has_scans = false}), IsEmpty());
   ASSERT_EQ(found_.errors.size(), 1u);
   EXPECT_THAT(found_.errors[0], HasSubstr("no messages of robot_calibration_msgs"));
   found_ = {};
-  EXPECT_THAT(read_base_drive((folder_.path() / "drive.bag").string(), found_), IsEmpty());
+  EXPECT_THAT(read_base_drive((folder_.path() / "drive.bag").string(), found_).samples, IsEmpty());
   ASSERT_EQ(found_.errors.size(), 1u);
   EXPECT_THAT(found_.errors[0], HasSubstr("takes scans of a wall"));
 }

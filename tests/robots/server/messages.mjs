@@ -39,6 +39,26 @@ const types = {
     (r ? "float64[] d\nfloat64[9] k\nfloat64[9] r\nfloat64[12] p\n"
        : "float64[] D\nfloat64[9] K\nfloat64[9] R\nfloat64[12] P\n") +
     "uint32 binning_x\nuint32 binning_y\nsensor_msgs/RegionOfInterest roi",
+  "geometry_msgs/Vector3": () => "float64 x\nfloat64 y\nfloat64 z",
+  "geometry_msgs/Point": () => "float64 x\nfloat64 y\nfloat64 z",
+  "geometry_msgs/Quaternion": () => "float64 x\nfloat64 y\nfloat64 z\nfloat64 w",
+  "geometry_msgs/Pose": () =>
+    "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation",
+  "geometry_msgs/PoseWithCovariance": () => "geometry_msgs/Pose pose\nfloat64[36] covariance",
+  "geometry_msgs/Twist": () => "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular",
+  "geometry_msgs/TwistWithCovariance": () => "geometry_msgs/Twist twist\nfloat64[36] covariance",
+  "nav_msgs/Odometry": () =>
+    "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n" +
+    "geometry_msgs/TwistWithCovariance twist",
+  "sensor_msgs/Imu": () =>
+    "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n" +
+    "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n" +
+    "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n" +
+    "float64[9] linear_acceleration_covariance",
+  "sensor_msgs/LaserScan": () =>
+    "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n" +
+    "float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n" +
+    "float32[] ranges\nfloat32[] intensities",
   "trajectory_msgs/JointTrajectoryPoint": (r) =>
     "float64[] positions\nfloat64[] velocities\nfloat64[] accelerations\nfloat64[] effort\n" +
     `${duration(r)} time_from_start`,

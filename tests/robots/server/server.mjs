@@ -1,13 +1,15 @@
 // A Foxglove bridge with a simulated robot behind it, for tests; by the protocol's reference server.
 //   node server.mjs '{"encoding": "ros1" | "cdr", "protocol": "foxglove.sdk.v1", "joint_type": ...,
 //                     "rate": 5 (of the robot's clock), "die_after": 0.5 (seconds after a goal: see "goals"),
-//                     "remote": true, "camera": "/head_camera", "urdf": TEXT (of a topic), "urdf_parameter": TEXT}'
+//                     "remote": true, "camera": "/head_camera", "urdf": TEXT (of a topic), "urdf_parameter": TEXT,
+//                     "base": {} (see base.mjs)}'
 // It prints {"port": ...} and then takes faults from its standard input, one a line: see `faults`; if it
 // is remote, see remote.mjs.
 // SPDX-License-Identifier: Apache-2.0
 import { createInterface } from "node:readline";
 import protocol from "@foxglove/ws-protocol";
 import { WebSocketServer } from "ws";
+import { Base } from "./base.mjs";
 import { definition, reader, writer } from "./messages.mjs";
 import { RemoteRobot, cameraOf, cloudOf } from "./remote.mjs";
 import { Robot } from "./robot.mjs";
@@ -192,6 +194,23 @@ if (!options.hidden) {
   action("/gripper_controller/led_action", "robot_calibration_msgs/GripperLedCommand", leds, () => ({}));
 }
 
+let base;
+if (options.base) {
+  base = new Base(options.base, seconds());
+  const odom = topic("/odom", "nav_msgs/Odometry");
+  const imu = topic("/imu", "sensor_msgs/Imu");
+  const scan = topic("/base_scan", "sensor_msgs/LaserScan");
+  const read = reader("geometry_msgs/Twist", ros2);
+  actions.set("/cmd_vel", (data) => base.command(read.readMessage(data), seconds()));
+  setInterval(() => {
+    const now = seconds();
+    base.step(now);
+    odom({ header: header(now, "odom"), ...base.odometry() });
+    imu({ header: header(now, "imu_link"), ...base.imu() });
+    scan({ header: header(now, "laser_link"), ...base.scan() });
+  }, 20);
+}
+
 // ROS loses what is published before subscribers have heard of the publisher.
 const advertised = new Map();
 server.on("advertise", (channel) => advertised.set(channel.topic, Date.now()));
@@ -227,11 +246,11 @@ const faults = {
     topics.get(name).withdraw();
   },
   half: ({ topics }) => (state.half = new Set(topics)),
+  commands: () => base.commands,
 };
 function makeFault(line) {
   const fault = JSON.parse(line);
-  faults[fault.fault](fault);
-  console.log("{}");
+  console.log(JSON.stringify(faults[fault.fault](fault) ?? {}));
 }
 if (!options.remote) input.on("line", makeFault);
 

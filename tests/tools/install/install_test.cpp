@@ -275,6 +275,97 @@ TEST_F(Install, WithoutCamerasTheirNamesAreNotMissed) {
                 (folder_ / "robot/calibrated_2026_01_02_03_04_05.urdf").string() + "'/></launch>");
 }
 
+/// The result of a mobile base, and a launch file as Fetch's installer leaves it: no blanks before "/>".
+class InstallBase : public Install {
+ protected:
+  static constexpr const char* kBefore =
+      "<launch>\n  <param name=\"calibration_date\" value=\"uncalibrated\"/>\n"
+      "  <param name=\"base_controller/track_width\" value=\"0.37476\"/>\n";
+  static constexpr const char* kAfter =
+      "  <param name=\"robot_description\" textfile=\"a.urdf\"/>\n</launch>";
+
+  InstallBase() {
+    write("out/calibration_2026_01_02_03_04_05.yaml",
+          "base: base_calibration.yaml\nurdf: calibrated.urdf\n");
+    write_base("odom: 0.390056326531\nimu: 0.001191185775\n");
+    write("robot/robot.launch", std::string(kBefore) + kAfter);
+  }
+  void write_base(const std::string& of_ros1) {
+    write("out/base_calibration.yaml",
+          "track_width_scale: 1.02  # +- 0.0004\nrollout_scale: 1.0\nimu_scale: 0.975\n" + of_ros1);
+  }
+};
+
+/// What calibrate_robot of fetch_calibration sets: str() of odom and imu.
+TEST_F(InstallBase, SetsWhatFetchsInstallerSets) {
+  write("robot/robot.launch", std::string(kBefore) +
+                                  "  <param name=\"/imu/gyro_scale\" value=\"0.001221729\"/>\n" +
+                                  kAfter);
+  install();
+  EXPECT_THAT(diagnostics_.warnings, IsEmpty());
+  EXPECT_EQ(launch(),
+            "<launch>\n  <param name=\"calibration_date\" value=\"2026-01-02 03:04:05\"/>\n"
+            "  <param name=\"base_controller/track_width\" value=\"0.390056326531\"/>\n"
+            "  <param name=\"/imu/gyro_scale\" value=\"0.001191185775\"/>\n"
+            "  <param name=\"robot_description\" textfile=\"" +
+                (folder_ / "robot/calibrated_2026_01_02_03_04_05.urdf").string() +
+                "\"/>\n</launch>");
+  const auto before = robot();
+  EXPECT_EQ(install().backup, "");  // nothing is multiplied again
+  EXPECT_EQ(robot(), before);
+  restore();
+  EXPECT_THAT(launch(), HasSubstr("value=\"0.37476\""));
+}
+
+TEST_F(InstallBase, NumbersAreAsPythonWritesThem) {
+  for (const auto& [in_file, installed] :
+       {std::pair("1.0", "1.0"), std::pair("0.370", "0.37"), std::pair("1.0e-05", "1e-05"),
+        std::pair("0.0001", "0.0001")}) {
+    write_base(std::string("odom: ") + in_file + "\n");
+    write("robot/robot.launch", std::string(kBefore) + kAfter);
+    install({"gyro_scale="});
+    EXPECT_THAT(launch(), HasSubstr(std::string("track_width\" value=\"") + installed + "\""));
+  }
+}
+
+/// Fetch's own launch file has no place for the gyroscope.
+TEST_F(InstallBase, AGyroscopeWithoutAPlaceIsSaid) {
+  install();
+  EXPECT_THAT(diagnostics_.warnings,
+              ElementsAre(HasSubstr("gyro_scale is not set to 0.001191185775: the launch file has "
+                                    "no param 'imu/gyro_scale'")));
+  EXPECT_THAT(launch(), HasSubstr("track_width\" value=\"0.390056326531\""));
+}
+
+TEST_F(InstallBase, ALaunchFileWithoutATrackWidthIsRefused) {
+  spoil("robot/robot.launch", "base_controller/track_width", "base_controller/width");
+  expect_refused(AllOf(HasSubstr("no param 'base_controller/track_width'"),
+                       HasSubstr("--name track_width=NAME names another one")));
+  install({"track_width=base_controller/width"});
+  EXPECT_THAT(launch(), HasSubstr("base_controller/width\" value=\"0.390056326531\""));
+}
+
+TEST_F(InstallBase, ScalesAloneAndARolloutAreSaid) {
+  write("out/base_calibration.yaml", "track_width_scale: 1.02\nrollout_scale: 0.98\n");
+  install();
+  EXPECT_THAT(
+      diagnostics_.warnings,
+      ElementsAre(HasSubstr("track_width is not set: base_calibration.yaml has track_width_scale "
+                            "1.02, not odom; give the error block the driver's track_width"),
+                  HasSubstr("rollout_scale 0.98 is not set")));
+  EXPECT_THAT(launch(), HasSubstr("value=\"0.37476\""));
+}
+
+TEST_F(InstallBase, AFileOfParametersOfRos2IsRefused) {
+  write("robot/base.yaml", "/**:\n  ros__parameters: {wheel_separation: 0.37}\n");
+  EXPECT_THAT(test::thrown<InputError>([&] {
+                (void)kinecal::install(read_result_folder(folder_ / "out"), folder_ / "robot",
+                                       "base.yaml", fetch_launch_names(), diagnostics_);
+              }),
+              AllOf(HasSubstr("'base.yaml': is one of ROS 2"),
+                    HasSubstr("track_width_scale as wheel_separation_multiplier")));
+}
+
 TEST_F(Install, WithoutADateInItsNameAResultIsOfWhenItWasWritten) {
   fs::rename(folder_ / "out/calibration_2026_01_02_03_04_05.yaml",
              folder_ / "out/calibration.yaml");

@@ -48,6 +48,13 @@ class LaunchXml : public XmlText {
     return found.size() == 1 ? found[0] : pugi::xml_node();
   }
 
+  [[nodiscard]] bool has(const LaunchSetting& setting) const {
+    const std::vector<Named> all = elements(setting.element);
+    return std::any_of(all.begin(), all.end(), [&](const Named& named) {
+      return named.name == without_slash(setting.name);
+    });
+  }
+
   /// The value of an element, in any attribute; empty if absent.
   [[nodiscard]] static std::string value_of(pugi::xml_node element) {
     for (const std::string_view name : kValueAttributes) {
@@ -191,6 +198,10 @@ const std::string& LaunchText::text() const {
 
 std::string LaunchText::value_of(const LaunchSetting& setting, Diagnostics& diagnostics) const {
   return LaunchXml::value_of(xml_->find(setting, diagnostics));
+}
+
+bool LaunchText::has(const LaunchSetting& setting) const {
+  return xml_->has(setting);
 }
 
 std::vector<std::filesystem::path> LaunchText::named_files() const {

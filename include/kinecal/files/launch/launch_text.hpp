@@ -64,6 +64,9 @@ class LaunchText {
   /// element.
   [[nodiscard]] std::string value_of(const LaunchSetting& setting, Diagnostics& diagnostics) const;
 
+  /// False if the text has no element of this name.
+  [[nodiscard]] bool has(const LaunchSetting& setting) const;
+
   /// The files that the text names by their full paths.
   [[nodiscard]] std::vector<std::filesystem::path> named_files() const;
 

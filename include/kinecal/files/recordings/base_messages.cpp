@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -20,6 +19,7 @@
 #include "kinecal/files/messages/message_fields.hpp"
 #include "kinecal/files/messages/scan_message.hpp"
 #include "kinecal/files/recordings/bag_topics.hpp"
+#include "kinecal/files/recordings/base_conditions.hpp"
 #include "kinecal/files/recordings/fixed_frames.hpp"
 #include "kinecal/files/recordings/message_decoder.ipp"
 #include "kinecal/files/recordings/read_bag.hpp"
@@ -88,15 +88,6 @@ struct SeenWall {
   double angle = kMissing, distance = kMissing;
 };
 
-/// The side of a joint that is a wheel: 0 left, 1 right; -1: it is none.
-[[nodiscard]] int side_of(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (name.find("wheel") == std::string::npos) return -1;
-  if (name.find("left") != std::string::npos || name.starts_with("l_")) return 0;
-  return name.find("right") != std::string::npos || name.starts_with("r_") ? 1 : -1;
-}
-
 /// Collects the messages of a drive.
 class BaseMessages {
  public:
@@ -108,6 +99,7 @@ class BaseMessages {
     choose_topics();
     const auto wants = [&](const BagTopic& topic) {
       const auto chosen = topics_.find(topic.type);
+      if (use_of(topic) == TopicUse::urdf) return true;
       return chosen != topics_.end() && chosen->second == topic.name;
     };
     const auto handle = [&](const BagMessage& message) {
@@ -115,6 +107,9 @@ class BaseMessages {
     };
     read_bag(path_, {wants, handle}, diagnostics_);
   }
+  [[nodiscard]] BaseDrive drive() { return {samples(), base_, scanner_, urdf_}; }
+
+ private:
   [[nodiscard]] std::vector<Sample> samples() {
     const bool says = !odom_.empty() || !gyro_.empty() || !wheels_.empty();
     if (!says || (walls_.empty() && tracked_.empty())) {
@@ -131,7 +126,6 @@ class BaseMessages {
     return thinned(all_samples());
   }
 
- private:
   /// Of several topics of a type, the one with upstream's name, else the first.
   void choose_topics() {
     const std::map<std::string, std::vector<std::string>> usual{
@@ -160,6 +154,10 @@ class BaseMessages {
 
   void take(const BagMessage& message, const MessageFields& content) {
     const std::string& type = message.topic.type;
+    if (use_of(message.topic) == TopicUse::urdf) {
+      urdf_ = text_at(content, "data");
+      return;
+    }
     const double time =
         std::chrono::duration<double>(header_stamp(content) - start_of(content)).count();
     late_[message.topic.name].push_back(
@@ -214,17 +212,17 @@ class BaseMessages {
     }
   }
   void take_wheels(double time, const MessageFields& content) {
-    std::array<double, 2> turned{kMissing, kMissing};
     const MessageValue::List &names = list_at(content, "name"),
                              &positions = list_at(content, "position");
     for (std::size_t i = 0; i < std::min(names.size(), positions.size()); ++i) {
       const auto* name = names[i].as<std::string_view>();
-      const int side = name == nullptr ? -1 : side_of(std::string(*name));
-      if (side < 0) continue;
-      positions[i].visit_number(
-          [&](auto x) { turned[static_cast<std::size_t>(side)] = static_cast<double>(x); });
+      const std::string wheel = name == nullptr ? "" : wheel_condition(*name);
+      if (wheel.empty()) continue;
+      positions[i].visit_number([&](auto x) {
+        const auto position = static_cast<double>(x);
+        if (std::isfinite(position)) wheels_[wheel].add(time, {position});
+      });
     }
-    if (std::isfinite(turned[0] + turned[1])) wheels_.add(time, turned);
   }
 
   /// A scanner that hangs upside down turns the other way.
@@ -271,7 +269,13 @@ class BaseMessages {
       };
       set(odom_, {"odom_x", "odom_y", "odom_yaw"});
       set(gyro_, {"gyro_yaw"});
-      set(wheels_, {"left_wheel", "right_wheel"});
+      for (const auto& [wheel, track] : wheels_) set(track, {wheel.c_str()});
+      for (const std::string side : {"left_wheel", "right_wheel"}) {  // of four wheels
+        const auto front = sample.conditions.find("front_" + side),
+                   rear = sample.conditions.find("rear_" + side);
+        if (front == sample.conditions.end() || rear == sample.conditions.end()) continue;
+        sample.conditions.emplace(side, 0.5 * (front->second + rear->second));
+      }
       set(tracked_, {"track_x", "track_y", "track_yaw"});
       return sample;
     };
@@ -312,11 +316,11 @@ class BaseMessages {
   /// Numbers runs, and leaves out samples that are near to others or stand still.
   [[nodiscard]] std::vector<Sample> thinned(std::vector<Sample> samples) const {
     constexpr double kSpeed = 0.01, kStill = 0.5, kFar = 0.05;  // m/s or rad/s, s, m or rad
-    const std::vector<std::string> names =
-        !odom_.empty()      ? std::vector<std::string>{"odom_x", "odom_y", "odom_yaw"}
-        : !tracked_.empty() ? std::vector<std::string>{"track_x", "track_y", "track_yaw"}
-        : !wheels_.empty()  ? std::vector<std::string>{"left_wheel", "right_wheel"}
-                            : std::vector<std::string>{"gyro_yaw"};
+    std::vector<std::string> names;
+    for (const auto& [wheel, track] : wheels_) names.push_back(wheel);
+    if (names.empty()) names = {"gyro_yaw"};
+    if (!tracked_.empty()) names = {"track_x", "track_y", "track_yaw"};
+    if (!odom_.empty()) names = {"odom_x", "odom_y", "odom_yaw"};
     const auto apart = [&](const Sample& a, const Sample& b) {
       double most = 0.0;
       for (const std::string& name : names) {
@@ -361,11 +365,12 @@ class BaseMessages {
   std::map<std::string, std::vector<double>> late_;  ///< recorded after its stamp, s, by topic
   Track<3> odom_, tracked_;                          ///< x, y, metres, yaw, radians
   Track<1> gyro_;                                    ///< integral of its rate, radians
-  Track<2> wheels_;                                  ///< left and right, radians
+  std::map<std::string, Track<1>> wheels_;           ///< by condition, radians
   double rate_ = 0.0;                                ///< of the gyroscope, last, rad/s
   std::vector<SeenWall> walls_;                      ///< one of each scan
   int without_wall_ = 0;                             ///< scans
   std::string refusal_, base_, scanner_;             ///< of the first of them; frames
+  std::string urdf_;
 };
 
 }  // namespace
@@ -376,10 +381,10 @@ bool shows_base(const BagTopic& topic) {
          topic.type == "geometry_msgs/PoseWithCovarianceStamped";
 }
 
-std::vector<Sample> read_base_drive(const std::string& path, Diagnostics& diagnostics) {
+BaseDrive read_base_drive(const std::string& path, Diagnostics& diagnostics) {
   detail::BaseMessages messages(path, diagnostics);
   messages.read();
-  return messages.samples();
+  return messages.drive();
 }
 
 }  // namespace kinecal

@@ -3,7 +3,8 @@
 //
 //   nav_msgs/Odometry                 odom_x odom_y odom_yaw; the angle does not jump at a full turn
 //   sensor_msgs/Imu                   gyro_yaw: the integral of its rate about z
-//   sensor_msgs/JointState            left_wheel right_wheel, of joints with wheel and left or right (l, r) in their names
+//   sensor_msgs/JointState            wheels and a steering angle, by the names of joints: see base_conditions.hpp; of four
+//                                     wheels also left_wheel right_wheel, the mean of each side
 //   sensor_msgs/LaserScan             wall_angle wall_distance, not numbers where it shows no wall
 //   geometry_msgs/PoseStamped, PoseWithCovarianceStamped   track_x track_y track_yaw
 //
@@ -25,11 +26,18 @@ namespace kinecal {
 /// True for a topic that shows how a base moved: scans, a tracked pose.
 [[nodiscard]] bool shows_base(const BagTopic& topic);
 
-/// The samples of a drive; none if the bag has no odometry, gyroscope or wheels, or nothing to compare them with: that is an
+/// The drive of a base, from a bag.
+struct BaseDrive {
+  std::vector<Sample> samples;
+  std::string base_frame;    ///< of the odometry; empty: it says none
+  std::string sensor_frame;  ///< of the scans; empty: there are none
+  std::string urdf;          ///< the last /robot_description; empty: there is none
+};
+
+/// Reads a drive; no samples if the bag has no odometry, gyroscope or wheels, or nothing to compare them with: that is an
 /// error.
 /// @param diagnostics  receives errors; a doubt if clocks differ or the gyroscope turns against the odometry; notes of scans
 ///                     without a wall
-[[nodiscard]] std::vector<Sample> read_base_drive(const std::string& path,
-                                                  Diagnostics& diagnostics);
+[[nodiscard]] BaseDrive read_base_drive(const std::string& path, Diagnostics& diagnostics);
 
 }  // namespace kinecal

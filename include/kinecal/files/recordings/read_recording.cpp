@@ -65,7 +65,7 @@ struct SensedTopics {
   if (topics.field) of_field = read_magnetometer(path, diagnostics);
   if (topics.drive) {
     Diagnostics of_drive;
-    samples = read_base_drive(path, of_drive);
+    samples = read_base_drive(path, of_drive).samples;
     for (const auto list : {&Diagnostics::errors, &Diagnostics::warnings, &Diagnostics::doubts,
                             &Diagnostics::refutable, &Diagnostics::notes}) {
       if (!of_field.empty() && !of_drive.errors.empty()) break;

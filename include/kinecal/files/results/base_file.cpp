@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "kinecal/errors/base_motion.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
@@ -14,8 +16,36 @@
 
 namespace kinecal {
 
+namespace detail {
+namespace {
+
+/// With twelve digits, as many as Python 2 prints: Fetch's installer copies them.
+[[nodiscard]] std::string twelve_digits(double value) {
+  return number_to_yaml(number_from_yaml(fmt::format("{:.12g}", value)).value_or(value));
+}
+
+/// What the driver should have instead of what it has, with its key in ROS 1.
+/// @param own      parameters of the error block, by name
+/// @param drivers  what it has, by error block
+[[nodiscard]] std::optional<std::pair<std::string, double>> of_ros1(
+    const Term& term, const std::map<std::string, double>& own,
+    const std::map<std::string, double>& drivers) {
+  const auto has = drivers.find(term.name);
+  if (has == drivers.end() || !(has->second > 0.0)) return std::nullopt;
+  if (term.options.type.starts_with("gyro")) return std::pair("imu", has->second * own.at("scale"));
+  double rollout = own.at("rollout_scale");
+  if (own.count("left_rollout_scale") > 0) {
+    rollout *= 0.5 * (own.at("left_rollout_scale") + own.at("right_rollout_scale"));
+  }
+  return std::pair("odom", has->second * own.at("track_width_scale") / rollout);
+}
+
+}  // namespace
+}  // namespace detail
+
 std::string base_calibration_yaml(const Calibration& calibration, const ParameterTable& table,
-                                  const std::map<int, double>& deviations) {
+                                  const std::map<int, double>& deviations,
+                                  const std::map<std::string, double>& drivers) {
   std::string text;
   std::set<std::string> keys;
   for (const CalibrationStep& step : calibration.steps) {
@@ -23,8 +53,10 @@ std::string base_calibration_yaml(const Calibration& calibration, const Paramete
       const Term& term = step.problem->term(t);
       if (!is_base_type(term.options.type)) continue;
       const std::string prefix = term.options.type.starts_with("gyro") ? "imu_" : "";
+      std::map<std::string, double> own;
       for (const int index : term.parameters) {
         const std::string name = table[index].name.substr(term.name.size() + 1);
+        own[name] = table[index].value;
         if (name == "x" || name == "y" || name == "yaw" || !keys.insert(prefix + name).second) {
           continue;
         }
@@ -34,6 +66,10 @@ std::string base_calibration_yaml(const Calibration& calibration, const Paramete
                                                    : "  # not determined";
         }
         text += "\n";
+      }
+      const auto ros1 = detail::of_ros1(term, own, drivers);
+      if (ros1 && keys.insert(ros1->first).second) {
+        text += fmt::format("{}: {}\n", ros1->first, detail::twelve_digits(ros1->second));
       }
     }
   }

@@ -162,7 +162,8 @@ std::vector<OutputFile> result_files(const Robot& robot, const std::string& urdf
     files.push_back({detail::camera_file("rgb", name, options.date), content});
     refer("rgb_info", name, files.back().name);
   }
-  if (const std::string base = base_calibration_yaml(calibration, result.table, options.deviations);
+  if (const std::string base =
+          base_calibration_yaml(calibration, result.table, options.deviations, options.drivers);
       !base.empty()) {
     files.push_back({detail::dated("base_calibration", ".yaml", options.date), base});
     refer("base", "", files.back().name);

@@ -46,6 +46,8 @@ struct ResultFileOptions {
   /// Standard deviations by table index, units of the parameters; infinite: not determined.
   std::map<int, double> deviations = {};
   std::set<std::string> in_servos = {};  ///< joints whose zeros the URDF does not get
+  /// What the driver of a base has, by error block: see base_calibration_yaml().
+  std::map<std::string, double> drivers = {};
 };
 
 /// The calibration of each joint of the robot, from the parameter values.  Skips virtual frames,

@@ -86,6 +86,9 @@ inline constexpr std::array<InitTargetWord, 20> kInitTargets = {{
      "an accelerometer on the arm, which reads gravity at rest"},
 }};
 
+/// The word for a mobile base, which is not measured against a target: see initial_base.hpp.
+inline constexpr std::string_view kBaseTarget = "base";
+
 /// The name of a target on the command line.
 [[nodiscard]] constexpr std::string_view to_string(InitTarget target,
                                                    InitBoard board = InitBoard::checkerboard) {
@@ -109,7 +112,7 @@ inline constexpr std::array<InitTargetWord, 20> kInitTargets = {{
   for (const InitTargetWord& known : kInitTargets) {
     words += (words.empty() ? "" : ", ") + std::string(known.word);
   }
-  return words;
+  return words + ", " + std::string(kBaseTarget);
 }
 
 /// True if the tip of an arm touches the target, or what it carries reads gravity: joints are all that is recorded, and at

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -37,10 +38,11 @@ namespace {
 //                                                    takes whole millimetres
 //   z_scaling                      <param value>     1 + z_scaling
 //   depth_, rgb_camera_info_url    <arg default>     file://<path>
+//   track_width, gyro_scale        <param value>     odom and imu of base_calibration.yaml
 //
 // If the result lacks z_offset or z_scaling for a depth camera, the camera was calibrated without
 // depth correction, whatever its driver used during recording: 0 and 1 are set.
-// Source: Fetch paper, III-C.
+// Source: Fetch paper, III-C; calibrate_robot of fetch_calibration.
 
 /// The files of a result under their names on the robot.
 struct InstalledFiles {
@@ -72,6 +74,12 @@ struct InstalledFiles {
   if (std::abs(metres) < kFarthest) return fmt::format("{}", static_cast<int>(metres * 1000.0));
   throw InputError(fmt::format("{}: a z_offset of {} m is impossible; the largest is {} m", file,
                                metres, kFarthest));
+}
+
+/// A number as Python's str() has it, which Fetch's installer writes: "1.0e-05" is "1e-05" there.
+[[nodiscard]] std::string python_number(double value) {
+  const std::string text = fmt::format("{}", value);
+  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
 
 /// Collects settings for the keys that have a name.
@@ -112,15 +120,56 @@ class LaunchSettings {
   std::vector<LaunchSetting> settings_;
 };
 
+/// The settings of a mobile base.
+/// @param launch  the launch file as it is: Fetch's has no place for gyro_scale
+void add_base_settings(const ResultFolder& result, const LaunchText& launch,
+                       const LaunchNames& names, LaunchSettings& settings,
+                       Diagnostics& diagnostics) {
+  const auto& values = result.base_values;
+  const auto value = [&](const char* key) {
+    const auto found = values.find(key);
+    return found == values.end() ? std::optional<double>() : found->second;
+  };
+  const auto set = [&](std::string_view key, const char* installed, const char* scale,
+                       bool is_optional) {
+    const std::optional<double> number = value(installed);
+    const std::string name(names.at(std::string(key)));
+    const LaunchSetting setting{std::string(key), LaunchElement::param, name, "value", ""};
+    const bool is_default = fetch_launch_names().at(std::string(key)) == name;
+    if (!number) {
+      if (!value(scale) || name.empty()) return;
+      diagnostics.warnings.push_back(fmt::format(
+          "{} is not set: {} has {} {}, not {}; give the error block the driver's {} and calibrate "
+          "again, or {} leaves it out",
+          key, result.base.name, scale, python_number(*value(scale)), installed, key,
+          name_option(std::string(key) + "=")));
+    } else if (is_optional && is_default && !launch.has(setting)) {
+      diagnostics.warnings.push_back(fmt::format(
+          "{} is not set to {}: the launch file has no param '{}'; {} names another one", key,
+          python_number(*number), name, name_option(std::string(key) + "=NAME")));
+    } else {
+      settings.add(setting.element, "", key, setting.attribute, python_number(*number));
+    }
+  };
+  set(launch_key::kTrackWidth, "odom", "track_width_scale", false);
+  set(launch_key::kGyroScale, "imu", "imu_scale", true);
+  for (const char* scale : {"rollout_scale", "left_rollout_scale", "right_rollout_scale"}) {
+    if (value(scale).value_or(1.0) == 1.0) continue;
+    diagnostics.warnings.push_back(fmt::format(
+        "{} {} is not set: Fetch's launch file has no place for it; with the track width that is "
+        "set, turns are right, and distances are not",
+        scale, python_number(*value(scale))));
+  }
+}
+
 /// The settings of a result.
+/// @param launch       the launch file as it is
 /// @param folder       future folder of the files, an absolute path
 /// @param diagnostics  receives a warning for each key without a name
 /// @throws InputError  if a name or a value is unusable
-[[nodiscard]] std::vector<LaunchSetting> launch_settings(const ResultFolder& result,
-                                                         const InstalledFiles& files,
-                                                         const std::filesystem::path& folder,
-                                                         const LaunchNames& names,
-                                                         Diagnostics& diagnostics) {
+[[nodiscard]] std::vector<LaunchSetting> launch_settings(
+    const ResultFolder& result, const InstalledFiles& files, const LaunchText& launch,
+    const std::filesystem::path& folder, const LaunchNames& names, Diagnostics& diagnostics) {
   LaunchSettings settings(names, diagnostics);
   constexpr LaunchElement kParam = LaunchElement::param, kArg = LaunchElement::arg;
   settings.add(kParam, "", launch_key::kDate, "value", date_for_people(result.date));
@@ -149,7 +198,23 @@ class LaunchSettings {
           "the file depth_correction of the result with true_depth.hpp");
     }
   }
+  add_base_settings(result, launch, names, settings, diagnostics);
   return settings.take();
+}
+
+/// @throws InputError  for a file of parameters or a launch file of ROS 2, with what to enter there
+void check_is_of_ros1(const std::string& launch, const ResultFolder& result) {
+  const std::string extension = std::filesystem::path(launch).extension().string();
+  if (extension != ".yaml" && extension != ".yml" && extension != ".py") return;
+  throw InputError(
+      "launch file '" + launch +
+      "': is one of ROS 2, where nothing has a fixed name; install sets launch files of ROS 1" +
+      (result.base.name.empty()
+           ? ""
+           : ".  Of a base, enter the scales of " + result.base.name +
+                 ": diff_drive_controller takes track_width_scale as wheel_separation_multiplier, "
+                 "and rollout_scale as left_wheel_radius_multiplier and "
+                 "right_wheel_radius_multiplier"));
 }
 
 /// The result's files, with this date in their names.
@@ -205,11 +270,12 @@ Installation install(const ResultFolder& result, const std::filesystem::path& fo
                      const std::string& launch, const LaunchNames& names,
                      Diagnostics& diagnostics) {
   detail::LaunchFolder target(folder, launch);
+  detail::check_is_of_ros1(launch, result);
   target.remove_leftovers();
   const detail::LaunchText old(detail::read_text_file(target.launch()), target.launch().string());
   const detail::InstalledFiles files = detail::files_for(result, target.path());
   const std::string text =
-      old.with(detail::launch_settings(result, files, target.path(), names, diagnostics));
+      old.with(detail::launch_settings(result, files, old, target.path(), names, diagnostics));
   std::vector<OutputFile> added;
   for (const OutputFile& file : detail::list(files)) {
     if (!std::filesystem::exists(target.path() / file.name)) added.push_back(file);

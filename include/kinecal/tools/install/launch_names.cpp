@@ -16,6 +16,8 @@ LaunchNames fetch_launch_names() {
   for (const std::string_view key : launch_key::kAll) names.emplace(key, key);
   names["z_offset_mm"] = "head_camera/driver/z_offset_mm";
   names["z_scaling"] = "head_camera/driver/z_scaling";
+  names["track_width"] = "base_controller/track_width";
+  names["gyro_scale"] = "imu/gyro_scale";
   return names;
 }
 

@@ -28,9 +28,11 @@ inline constexpr std::string_view kDepthScaling = "z_scaling";   ///< depth scal
 /// File of the depth camera.
 inline constexpr std::string_view kDepthInfo = "depth_camera_info_url";
 inline constexpr std::string_view kRgbInfo = "rgb_camera_info_url";  ///< file of the color camera
+inline constexpr std::string_view kTrackWidth = "track_width";       ///< of the base, metres
+inline constexpr std::string_view kGyroScale = "gyro_scale";  ///< factor of the gyroscope's driver
 /// All keys.
-inline constexpr std::array kAll = {kDate,         kRobot,     kDepthOffset,
-                                    kDepthScaling, kDepthInfo, kRgbInfo};
+inline constexpr std::array kAll = {kDate,      kRobot,   kDepthOffset, kDepthScaling,
+                                    kDepthInfo, kRgbInfo, kTrackWidth,  kGyroScale};
 }  // namespace launch_key
 
 /// The names in the launch file of the Fetch robot, for every key.

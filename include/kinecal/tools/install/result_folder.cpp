@@ -34,6 +34,16 @@ namespace {
   throw InputError(path + ": is not a map of names and values");
 }
 
+/// The entries of a map that are numbers.
+[[nodiscard]] std::map<std::string, double> number_entries(const YamlNode& map) {
+  std::map<std::string, double> numbers;
+  for (std::size_t i = 0; i < map.keys.size(); ++i) {
+    const auto value = config_number(map.items[i]);
+    if (map.keys[i].is_scalar() && value) numbers[map.keys[i].text] = *value;
+  }
+  return numbers;
+}
+
 /// The calibration file of a folder; if there are several, the newest, which report.json describes.
 [[nodiscard]] std::filesystem::path values_file(const std::filesystem::path& folder) {
   std::error_code error;
@@ -114,6 +124,7 @@ void check_is_whole(const std::filesystem::path& folder, const JsonValue& report
   }
   check(result.values.name, result.values.content);
   check(result.urdf.name, result.urdf.content);
+  if (!result.base.name.empty()) check(result.base.name, result.base.content);
   for (const ResultCamera& camera : result.cameras) check(camera.file.name, camera.file.content);
 }
 
@@ -154,6 +165,10 @@ ResultFolder read_result_folder(const std::filesystem::path& folder) {
     } else if (key == "urdf") {
       result.urdf = detail::named_file(folder, path.string(), item);
       urdf_path = folder / item.text;
+    } else if (key == "base") {
+      result.base = detail::named_file(folder, path.string(), item);
+      result.base_values = detail::number_entries(
+          detail::yaml_map(result.base.content, (folder / item.text).string()));
     } else if (auto camera = detail::camera_key(key)) {
       camera->file = detail::named_file(folder, path.string(), item);
       camera->name = detail::camera_name(camera->file.content, folder / item.text);

@@ -1,0 +1,174 @@
+// kinecal capture with the configuration of a mobile base: records its drive behind a bridge, and drives it if that is asked for.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <iostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "interruption.hpp"
+#include "kinecal/capture/robot_interface.hpp"
+#include "kinecal/errors/base_motion.hpp"
+#include "kinecal/files/messages/known_definitions.hpp"
+#include "kinecal/files/recordings/bag_output.hpp"
+#include "kinecal/files/recordings/base_messages.hpp"
+#include "kinecal/files/recordings/convert.hpp"
+#include "kinecal/files/recordings/write_recording.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/text_file.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/files/yaml/yaml_node.hpp"
+#include "kinecal/robots/ros_base.hpp"
+#include "kinecal/text/counted.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "output_file.hpp"
+#include "question.hpp"
+#include "terminal.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// The topics, with those of --topic KEY=NAME.
+BaseTopics topics_of(const std::vector<std::string>& given) {
+  BaseTopics topics;
+  for (const std::string& text : given) {
+    const std::size_t equals = text.find('=');
+    const std::string key = text.substr(0, equals),
+                      name = text.substr(std::min(equals, text.size() - 1) + 1);
+    if (equals == std::string::npos || name.empty()) {
+      throw InputError("--topic: '" + text + "' is not KEY=NAME");
+    }
+    if (key == "odom")
+      topics.odom = name;
+    else if (key == "scan")
+      topics.scans = {name};
+    else if (key == "commands")
+      topics.commands = name;
+    else if (key == "imu" || key == "wheels" || key == "pose")
+      topics.others.push_back(name);
+    else {
+      const std::vector<std::string> keys = {"odom", "scan", "commands", "imu", "wheels", "pose"};
+      throw InputError(fmt::format("--topic: '{}' is not a key{}", key, did_you_mean(key, keys)));
+    }
+  }
+  std::erase(topics.others, "/robot_description");  // that of --urdf is written
+  return topics;
+}
+
+/// True once somebody has pressed Enter.
+bool enter_is_pressed() {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  if (poll(&input, 1, 0) <= 0 || (input.revents & POLLIN) == 0) return false;
+  std::string line;
+  return static_cast<bool>(std::getline(std::cin, line));
+}
+
+/// Records until Enter, an interruption, or the time of --seconds.
+void follow(RosBase& base, const CaptureOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  const bool waits = on_a_terminal();
+  if (!options.seconds) say("recording: drive the base; {} ends it\n", waits ? "Enter" : "Ctrl-C");
+  const auto began = Clock::now();
+  while (!Interruption::is_asked()) {
+    base.record(std::chrono::milliseconds(50));
+    if (options.seconds && Clock::now() - began > std::chrono::duration<double>(*options.seconds)) {
+      return;
+    }
+    if (!options.seconds && waits && enter_is_pressed()) return;
+  }
+}
+
+/// Drives, or follows.
+/// @returns  why it ended early; empty if it did not
+std::string run(RosBase& base, const CaptureOptions& options) {
+  if (!options.drive) {
+    follow(base, options);
+    return "";
+  }
+  BaseDriving driving;
+  driving.turn *= options.velocity;
+  driving.speed *= options.velocity;
+  if (options.distance) driving.distance = *options.distance;
+  say("driving: keep clear of the base; Ctrl-C stops it\n");
+  const std::string why = drive_base(
+      base, driving, [] { return Interruption::is_asked(); },
+      [](const std::string& line) { say("  {}\n", line); });
+  return why == "interrupted" ? "" : why;
+}
+
+}  // namespace
+
+bool is_base_config(const std::string& path) {
+  try {
+    for (const detail::YamlNode& document :
+         detail::parse_yaml(detail::read_text_file(path), path)) {
+      const detail::YamlNode* blocks = document.is_map() ? document.find("error_blocks") : nullptr;
+      if (blocks == nullptr) continue;
+      for (const detail::YamlNode& block : blocks->items) {
+        const detail::YamlNode* type = block.is_map() ? block.find("type") : nullptr;
+        if (type != nullptr && is_base_type(type->text)) return true;
+      }
+    }
+  } catch (const InputError&) {  // reported where it is read
+  }
+  return false;
+}
+
+int capture_base(const CaptureOptions& options) {
+  const auto encoding = output_encoding(options.output);
+  if (!encoding) {
+    throw InputError("--output: a drive is recorded in a bag: " + options.output +
+                     " ends neither in .bag nor in .mcap");
+  }
+  if (!options.robot.starts_with("ws://")) {
+    throw InputError("--robot: a base is behind a bridge: ws://HOST:PORT");
+  }
+  if (options.distance && !(*options.distance > 0.0)) {
+    throw InputError("--distance: is not positive");
+  }
+  check_output(options.output, {options.config, options.urdf}, options.force);
+  const std::string urdf = read_urdf_text(options.urdf);
+  (void)parse_urdf(urdf, options.urdf);
+  BagOutput bag(options.output, *encoding);
+  write_urdf(bag, urdf);
+  const auto write = [&](const std::string& topic, const std::string& type, std::int64_t time,
+                         const MessageFields& message) {
+    if (!detail::known_definition(type, *encoding).empty()) bag.write({topic, type}, time, message);
+  };
+  const Interruption interruption;
+  std::string lost;
+  RosBase base({.url = options.robot}, topics_of(options.topics), write);
+  try {
+    lost = run(base, options);
+  } catch (const ConnectionError& error) {
+    lost = error.what();
+    if (options.drive) lost += "; the base may be moving: only its own driver can stop it now";
+  }
+  bag.finish(existing_at(options.output));
+  for (const auto& [topic, count] : base.received()) {
+    say("{}: {} of {}\n", options.output, counted(static_cast<std::size_t>(count), "message"),
+        topic);
+  }
+  const bool is_interrupted = Interruption::is_asked();
+  if (is_interrupted || !lost.empty()) {
+    say(stderr, "error: {}\n", is_interrupted ? "interrupted" : lost);
+    return is_interrupted ? kInterrupted : kBadInput;
+  }
+  Diagnostics diagnostics;
+  const BaseDrive drive = read_base_drive(options.output, diagnostics);
+  print(diagnostics);
+  if (!diagnostics.errors.empty()) return kBadInput;
+  say("{}: {}\n", options.output, counted(drive.samples.size(), "sample"));
+  const InputOptions next{
+      .urdf = options.urdf, .config = options.config, .samples = {options.output}};
+  say("next: {}\n", calibrate_command(next).str());
+  return kDone;
+}
+
+}  // namespace kinecal::cli
