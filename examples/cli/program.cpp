@@ -53,6 +53,7 @@ std::vector<std::string> target_words() {
   std::vector<std::string> words;
   for (const kinecal::InitTargetWord& target : kinecal::kInitTargets)
     words.emplace_back(target.word);
+  words.emplace_back("magnetometer");
   return words;
 }
 
