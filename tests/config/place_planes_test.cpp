@@ -12,7 +12,7 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
-TEST(PlacePlanes, AFeatureForEachPointThatNoFeatureSaysOtherwise) {
+TEST(PlacePlanes, HaveAFeatureForEachPoint) {
   Diagnostics found;
   const Config config = parse_config(
       "base_link: base\nmodels:\n- {name: laser, type: chain3d, frame: laser}\n- {name: wall, "
@@ -27,9 +27,10 @@ TEST(PlacePlanes, AFeatureForEachPointThatNoFeatureSaysOtherwise) {
   plane.rotation = Matrix3<double>::Identity();
   std::vector<Sample> samples(4);
   samples[0].observations = {{"laser", {point, point, point}, {}}};
-  samples[1].observations = {{"laser", {point, point}, {}}, {"wall", {plane}, {}}};
-  samples[2].observations = {{"laser", {point, point}, {}}, {"wall", {plane, plane}, {}}};
+  samples[1].observations = {{"laser", {point, point}, {}}};
+  samples[2].observations = {{"laser", {point, point, point}, {}}, {"camera", {point}, {}}};
   samples[3].observations = {{"camera", {point}, {}}};
+  const std::vector<Sample> given = samples;
   place_planes(config, samples);
   const auto wall = [&](std::size_t s) { return samples[s].observation("wall"); };
   ASSERT_NE(wall(0), nullptr);
@@ -37,10 +38,18 @@ TEST(PlacePlanes, AFeatureForEachPointThatNoFeatureSaysOtherwise) {
   EXPECT_EQ(wall(0)->features[2].frame, "wall");
   EXPECT_TRUE(wall(0)->features[2].point.isZero());
   EXPECT_TRUE(wall(0)->features[2].rotation->isIdentity());
+  EXPECT_EQ(wall(1), nullptr) << "two points may be tips";
+  EXPECT_NE(wall(2), nullptr);
+  EXPECT_EQ(wall(3), nullptr);
+
+  samples = given;
+  samples[1].observations.push_back({"wall", {plane}, {}});
+  samples[2].observations.push_back({"wall", {plane, plane, plane}, {}});
+  place_planes(config, samples);
+  EXPECT_EQ(wall(0), nullptr) << "the samples say where the wall is";
   ASSERT_THAT(wall(1)->features, SizeIs(2));
   EXPECT_EQ(wall(1)->features[1].frame, "other");
-  EXPECT_THAT(wall(2)->features, SizeIs(2));
-  EXPECT_EQ(wall(3), nullptr);
+  EXPECT_THAT(wall(2)->features, SizeIs(3));
 }
 
 }  // namespace
