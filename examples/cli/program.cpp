@@ -709,10 +709,10 @@ void add_detect(CLI::App& command, DetectOptions& options) {
       ->type_name("FILE");
   CLI::Option* bag =
       command
-          .add_option(
-              "--bag", options.bags,
-              "recording of images or clouds, camera_info and joint states: ROS 1 bag, ROS 2 bag "
-              "or MCAP; each standstill of the robot gives a sample; may be repeated")
+          .add_option("--bag", options.bags,
+                      "recording of images, clouds or scans, camera_info and joint states: ROS 1 "
+                      "bag, ROS 2 bag "
+                      "or MCAP; each standstill of the robot gives a sample; may be repeated")
           ->allow_extra_args(false)
           ->type_name("FILE");
   command

@@ -13,24 +13,33 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// @param model  of the plane or line
-void place(Sample& sample, const std::string& points_of, const ModelConfig& model) {
-  const Observation* points = sample.observation(points_of);
-  if (points == nullptr || points->features.empty()) return;
-  const std::size_t count = points->features.size();  // adding an observation moves them
-  const auto is_it = [&](const Observation& seen) { return seen.sensor == model.name; };
-  auto plane = std::find_if(sample.observations.begin(), sample.observations.end(), is_it);
-  if (plane == sample.observations.end()) {
-    plane = sample.observations.insert(plane, Observation{model.name, {}, {}});
-  }
-  if (plane->features.empty()) {
+/// True if a sensor observes something in a sample.
+[[nodiscard]] bool sees(const Sample& sample, const std::string& sensor) {
+  const Observation* seen = sample.observation(sensor);
+  return seen != nullptr && !seen->features.empty();
+}
+
+/// @param model      of the plane or line
+/// @param is_frame   no sample says where it is
+void place(Sample& sample, const std::string& points_of, const ModelConfig& model, bool is_frame) {
+  constexpr std::size_t kCloud = 3;  // fewer may be a tip that touches nothing in this sample
+  if (!sees(sample, points_of)) return;
+  const Observation& points = *sample.observation(points_of);
+  const std::size_t count = points.features.size();
+  if (!sees(sample, model.name)) {
+    if (!is_frame || count < kCloud || points.features.front().id) return;
     Feature feature{model.frame, Vector3<double>::Zero()};
     feature.rotation = Matrix3<double>::Identity();
-    plane->features.push_back(std::move(feature));
+    std::erase_if(sample.observations,
+                  [&](const Observation& o) { return o.sensor == model.name; });
+    sample.observations.push_back({model.name, {std::move(feature)}, {}});
   }
-  if (plane->features.size() != 1 || plane->features.front().id) return;
-  const Feature one = plane->features.front();
-  plane->features.resize(count, one);
+  for (Observation& seen : sample.observations) {
+    if (seen.sensor != model.name || seen.features.size() != 1 || seen.features.front().id)
+      continue;
+    const Feature one = seen.features.front();
+    seen.features.resize(count, one);
+  }
 }
 
 }  // namespace
@@ -45,7 +54,10 @@ void place_planes(const Config& config, std::vector<Sample>& samples) {
             return block.models.size() == 2 && one.name == block.models[1];
           });
       if (model == step.models.end()) continue;
-      for (Sample& sample : samples) detail::place(sample, block.models[0], *model);
+      const bool is_frame = std::none_of(samples.begin(), samples.end(), [&](const Sample& sample) {
+        return detail::sees(sample, model->name);
+      });
+      for (Sample& sample : samples) detail::place(sample, block.models[0], *model, is_frame);
     }
   }
 }

@@ -1,7 +1,7 @@
 // Planes and lines that many points of a sample lie on (point_on_plane, point_on_line): a wall that a laser sees, a board.
 //
-// Blocks pair features, so a plane needs one for each point.  A sample that says nothing of it has the plane where the frame of its
-// model is, and a single feature is that of every point.
+// Blocks pair features, so a plane needs one for each point.  A single feature is that of every point.  If no sample says anything
+// of a plane, it is where the frame of its model is, in samples in which three points or more without ids are seen.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

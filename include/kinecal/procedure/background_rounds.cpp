@@ -146,7 +146,8 @@ void report(const BlockConfig& block, const CloudDistances& found, std::span<con
     Config wide = config;
     for (StepConfig& step : wide.steps) {
       for (BlockConfig& block : step.error_blocks) {
-        if (is_cloud(block, samples)) block.loss.scale *= width;
+        if (width == 1.0 || !is_cloud(block, samples)) continue;
+        block.loss = {"cauchy", width * block.loss.scale};  // tukey has no slope far away
       }
     }
     Diagnostics quiet;

@@ -1,12 +1,12 @@
 // Rounds that leave out the background of clouds which error blocks compare with a sphere, a plane or a line: the table under a ball
 // in the profiles of a line scanner, what stands before the wall that a laser sees.
 //
-// A block whose sensor sees clouds (point_to_sphere, chain3d_to_plane, point_on_plane, point_to_line, point_on_line; more than kCloud
+// A block whose sensor sees clouds (point_to_sphere, chain3d_to_plane, point_on_plane, point_to_line, point_on_line; more than ten
 // points a sample, without ids) takes part if it has a loss of which far points hardly count, cauchy or tukey.
 //
-// 1. Each round is a calibration with that loss, first as wide as kWidest times its scale, then narrower by a factor of three, from
-//    where the round before ended.  So no guess has to say which points belong.
-// 2. Points beyond kGate scales at the end are of something else: they are left out, and the solve has the others with their loss.
+// 1. Each round is a calibration, the first with a loss of 81 times that scale, then narrower by a factor of three, from where the
+//    round before ended.  So no guess has to say which points belong.
+// 2. Points beyond 20 scales at the end are of something else: they are left out, and the solve has the others with their loss.
 //
 // The meshes of a robot, a room or a plate are matched by surface_rounds.hpp.
 // SPDX-License-Identifier: Apache-2.0
