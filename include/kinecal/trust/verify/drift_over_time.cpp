@@ -79,8 +79,14 @@ struct LineFit {
   }
 };
 
-/// Correlation of what is left in consecutive recordings: 0 to 0.9, as a smaller one costs nothing and a larger one cannot
-/// be told from a drift.
+constexpr double kMostMemory = 0.9;  ///< a larger one cannot be told from a drift
+
+/// As how many fewer recordings they count.
+[[nodiscard]] double fewer(double memory) {
+  return (1.0 + memory) / (1.0 - memory);
+}
+
+/// Correlation of what is left in consecutive recordings; not negative, which costs nothing.
 [[nodiscard]] double memory_of(const std::vector<Weighted>& all, const LineFit& fit) {
   Eigen::MatrixXd mean =
       Eigen::MatrixXd::Zero(all.front().weight.rows(), all.front().weight.rows());
