@@ -148,7 +148,6 @@ int capture_base(const CaptureOptions& options) {
     lost = run(base, options);
   } catch (const ConnectionError& error) {
     lost = error.what();
-    if (options.drive) lost += "; the base may be moving: only its own driver can stop it now";
   }
   bag.finish(existing_at(options.output));
   for (const auto& [topic, count] : base.received()) {

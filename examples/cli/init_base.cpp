@@ -195,7 +195,7 @@ BaseAnswers answer(const InitOptions& options, const BaseInput& in) {
   }
   const BaseSizes known = sizes_of_urdf(in.robot, in.urdf_text, answers.base_link, answers.drive);
   if (answers.drive == "odometry") {
-    answers.sizes.track_width = options.track_width.value_or(known.track_width);
+    answers.sizes.track_width = options.track_width.value_or(0.0);  // the driver's: not the URDF's
   } else if (!answers.drive.empty()) {
     answers.sizes.wheel_radius =
         size(options.wheel_radius, known.wheel_radius, "--wheel-radius",

@@ -480,7 +480,8 @@ void add_init(CLI::App& command, InitOptions& options) {
               "nominal; metres a unit of the positions, such as a tick; default: of the URDF",
               "METRES");
   add_of_base("--track-width", options.track_width,
-              "nominal, that of the driver; default: of the URDF", "METRES");
+              "nominal; default: of the URDF.  With odometry that of the driver, for 'install'",
+              "METRES");
   add_of_base("--wheelbase", options.wheelbase, "nominal; default: of the URDF", "METRES");
   add_of_base("--gyro-scale", options.gyro_scale,
               "of the gyroscope's driver, for 'install'; default: not known", "FACTOR");

@@ -36,7 +36,7 @@ class BaseProgram : public test::ProgramTest {
 TEST_F(BaseProgram, ASimulatedDriveIsCalibrated) {
   simulate();
   EXPECT_THAT(done("init --target base --drive differential --urdf drive/robot.urdf --from "
-                   "drive/drive.csv --wheel-radius 0.0605 --track-width 0.37476 "
+                   "drive/drive.csv --wheel-radius 0.0605 "
                    "--gyro-scale 0.001221729 --output base.yaml"),
               AllOf(HasSubstr("wrote columns.yaml"),
                     HasSubstr("from the recording: differential and a gyroscope, a tracked pose"),

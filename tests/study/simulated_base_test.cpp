@@ -227,7 +227,7 @@ TEST(SimulatedBase, UpstreamsFormulaOfRos1HasTheReciprocalOfTheTrackWidth) {
 /// Since 0.10: rollout_scale is the mean of the ways, track_width_scale is that over the mean of the turns.  Ours looks at
 /// all samples, and is not farther from the truth.
 TEST(SimulatedBase, UpstreamsFormulaBesideOurs) {
-  const int repetitions = test::repetitions(100, 12);
+  const int repetitions = test::repetitions_of_study(100, 12);
   double upstream = 0.0, ours = 0.0;  // sums of squares
   for (int n = 0; n < repetitions; ++n) {
     const std::vector<Sample> samples =

@@ -240,25 +240,17 @@ class RunDriver {
   RosBase::Odometry start_ = {};
 };
 
-}  // namespace
-}  // namespace detail
-
-std::string drive_base(RosBase& base, const BaseDriving& driving,
-                       const std::function<bool()>& is_interrupted,
-                       const std::function<void(const std::string&)>& say) {
-  for (const double positive : {driving.turn, driving.speed, driving.distance,
-                                driving.turn_acceleration, driving.acceleration}) {
-    if (!(positive > 0.0)) throw std::invalid_argument("speeds and distances must be positive");
-  }
-  const detail::StopsAtEnd stops(base);
-  detail::RunDriver driver(base, driving, is_interrupted);
-  base.command(0.0, 0.0);  // ROS loses what is published before others know of the publisher
+/// What drive_base() does, once something could be commanded.
+[[nodiscard]] std::string drive_all(RosBase& base, const BaseDriving& driving,
+                                    const std::function<bool()>& is_interrupted,
+                                    const std::function<void(const std::string&)>& say) {
+  RunDriver driver(base, driving, is_interrupted);
   for (const auto end = Clock::now() + driving.rest; Clock::now() < end || !base.odometry();) {
-    base.record(detail::kCommandPeriod);
+    base.record(kCommandPeriod);
     if (is_interrupted()) return "interrupted";
     if (!base.odometry() && Clock::now() > end + driving.silence) return base.why_no_odometry();
   }
-  std::vector<detail::DrivenRun> runs;
+  std::vector<DrivenRun> runs;
   for (const double speed : {driving.turn / 3.0, driving.turn}) {
     for (const double turn : {speed, -speed}) runs.push_back({0.0, turn, 2.0 * std::numbers::pi});
   }
@@ -276,13 +268,33 @@ std::string drive_base(RosBase& base, const BaseDriving& driving,
             : "no straight runs: there is no scan that shows what is ahead");
   }
   double back = 0.0;  // what a run ahead went: the run back goes no farther
-  for (detail::DrivenRun& run : runs) {
+  for (DrivenRun& run : runs) {
     if (run.ahead < 0.0) run.amount = back;
     say(run.text());
     if (std::string why = driver.drive(run); !why.empty()) return why;
     if (run.ahead > 0.0) back = driver.gone(run);
   }
   return "";
+}
+
+}  // namespace
+}  // namespace detail
+
+std::string drive_base(RosBase& base, const BaseDriving& driving,
+                       const std::function<bool()>& is_interrupted,
+                       const std::function<void(const std::string&)>& say) {
+  for (const double positive : {driving.turn, driving.speed, driving.distance,
+                                driving.turn_acceleration, driving.acceleration}) {
+    if (!(positive > 0.0)) throw std::invalid_argument("speeds and distances must be positive");
+  }
+  base.command(0.0, 0.0);  // ROS loses what is published before others know of the publisher
+  const detail::StopsAtEnd stops(base);
+  try {
+    return detail::drive_all(base, driving, is_interrupted, say);
+  } catch (const ConnectionError& error) {
+    throw ConnectionError(std::string(error.what()) +
+                          "; the base may be moving: only its own driver can stop it now");
+  }
 }
 
 }  // namespace kinecal

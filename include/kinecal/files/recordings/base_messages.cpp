@@ -270,11 +270,11 @@ class BaseMessages {
       set(odom_, {"odom_x", "odom_y", "odom_yaw"});
       set(gyro_, {"gyro_yaw"});
       for (const auto& [wheel, track] : wheels_) set(track, {wheel.c_str()});
-      for (const std::string side : {"left_wheel", "right_wheel"}) {  // of four wheels
-        const auto front = sample.conditions.find("front_" + side),
-                   rear = sample.conditions.find("rear_" + side);
+      for (const std::string wheel : {"left_wheel", "right_wheel"}) {  // of four wheels
+        const auto front = sample.conditions.find("front_" + wheel),
+                   rear = sample.conditions.find("rear_" + wheel);
         if (front == sample.conditions.end() || rear == sample.conditions.end()) continue;
-        sample.conditions.emplace(side, 0.5 * (front->second + rear->second));
+        sample.conditions.emplace(wheel, 0.5 * (front->second + rear->second));
       }
       set(tracked_, {"track_x", "track_y", "track_yaw"});
       return sample;

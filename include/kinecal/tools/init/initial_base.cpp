@@ -160,10 +160,11 @@ template <class Has>
   return "free_params:\n" + text + held;
 }
 
-/// "  track_width: 0.375", or a comment if it is not known.
+/// "  track_width: 0.375  # comment"; commented out if it is not known.
 [[nodiscard]] std::string size_line(const char* key, double value, const char* comment) {
-  if (value > 0.0) return fmt::format("  {}: {}{}\n", key, number_to_yaml(value), comment);
-  return fmt::format("  # {}: {}\n", key, "not known");
+  const std::string after = *comment == 0 ? "" : std::string("   # ") + comment;
+  if (value > 0.0) return fmt::format("  {}: {}{}\n", key, number_to_yaml(value), after);
+  return fmt::format("  # {}:{}\n", key, after);
 }
 
 [[nodiscard]] std::string blocks_text(const BaseAnswers& of) {
@@ -172,9 +173,9 @@ template <class Has>
     text += fmt::format("- name: base\n  type: {}_to_{}\n", of.drive, of.seen);
     if (of.drive == "odometry") {
       text += size_line("track_width", of.sizes.track_width,
-                        "   # of the driver, metres, for installers: see base_calibration.yaml");
+                        "metres, of the driver: for odom in base_calibration.yaml");
     } else {
-      text += size_line("wheel_radius", of.sizes.wheel_radius, "   # metres, nominal");
+      text += size_line("wheel_radius", of.sizes.wheel_radius, "metres, nominal");
       if (of.drive != "tricycle") text += size_line("track_width", of.sizes.track_width, "");
       if (of.drive != "differential") text += size_line("wheelbase", of.sizes.wheelbase, "");
     }
@@ -192,10 +193,8 @@ template <class Has>
   }
   if (of.has_gyro) {
     text += fmt::format("- name: imu\n  type: gyro_to_{}\n", of.seen);
-    if (of.gyro_scale > 0.0) {
-      text += size_line("gyro_scale", of.gyro_scale,
-                        "   # of the driver, for installers: see base_calibration.yaml");
-    }
+    text +=
+        size_line("gyro_scale", of.gyro_scale, "of the driver: for imu in base_calibration.yaml");
   }
   return text;
 }
