@@ -71,13 +71,14 @@ bool enter_is_pressed() {
 
 /// Records until Enter, an interruption, or the time of --seconds.
 void follow(RosBase& base, const CaptureOptions& options) {
-  using Clock = std::chrono::steady_clock;
+  using Steady = std::chrono::steady_clock;
   const bool waits = on_a_terminal();
   if (!options.seconds) say("recording: drive the base; {} ends it\n", waits ? "Enter" : "Ctrl-C");
-  const auto began = Clock::now();
+  const auto began = Steady::now();
   while (!Interruption::is_asked()) {
     base.record(std::chrono::milliseconds(50));
-    if (options.seconds && Clock::now() - began > std::chrono::duration<double>(*options.seconds)) {
+    if (options.seconds &&
+        Steady::now() - began > std::chrono::duration<double>(*options.seconds)) {
       return;
     }
     if (!options.seconds && waits && enter_is_pressed()) return;

@@ -47,7 +47,7 @@ namespace {
 }
 
 /// Where a fixed frame is, metres.
-[[nodiscard]] Vector3<double> place_of(const FreeFrameConfig& frame, const StepConfig& step) {
+[[nodiscard]] Vector3<double> fixed_place(const FreeFrameConfig& frame, const StepConfig& step) {
   Vector3<double> place = Vector3<double>::Zero();
   for (const InitialValueConfig& value : step.initial_values) {
     for (Eigen::Index k = 0; k < 3; ++k) {
@@ -138,7 +138,7 @@ std::optional<ConfiguredTouch> configured_touch(const Config& config) {
     if (&frame == &tip) continue;
     touch.places.push_back(frame.name);
     is_known = is_known || frame.is_fixed;
-    if (frame.is_fixed) touch.target.layout = {detail::place_of(frame, step)};
+    if (frame.is_fixed) touch.target.layout = {detail::fixed_place(frame, step)};
     if (touch.target.contact != Contact::point || !detail::turns(frame)) continue;
     // That of sockets at known places turns like a tracker's; 'init' calls what is touched so.
     if (block->models.back() != "touched") return std::nullopt;
