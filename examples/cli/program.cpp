@@ -54,6 +54,7 @@ std::vector<std::string> target_words() {
   for (const kinecal::InitTargetWord& target : kinecal::kInitTargets)
     words.emplace_back(target.word);
   words.emplace_back(kinecal::kBaseTarget);
+  words.emplace_back("magnetometer");
   return words;
 }
 
