@@ -74,6 +74,26 @@ TEST(MagnetometerStart, IsRefusedWhereNothingTurned) {
   EXPECT_THAT(found.errors, ElementsAre(HasSubstr("all the same: did it turn?")));
 }
 
+TEST(MagnetometerStart, AFieldBesideAllGainsIsAnError) {
+  const auto errors = [](const std::vector<Sample>& of, const std::string& free) {
+    Diagnostics found;
+    Config config = parse_config("base_link: base_link\nmodels: []\nfree_params: [" + free +
+                                     "]\nerror_blocks:\n- {name: mag, type: magnetic_field}\n",
+                                 "mag.yaml", found);
+    std::vector<Sample> samples = of;
+    begin_magnetometer(config, samples, found);
+    return found.errors;
+  };
+  const std::vector<Sample> turn = SimulatedMagnetometer{}.samples(50, 1),
+                            all = SimulatedMagnetometer{.all_ways = true}.samples(50, 1);
+  EXPECT_THAT(errors(all, "mag_xx, mag_yy, mag_field"), IsEmpty());
+  EXPECT_THAT(errors(all, "mag_xx, mag_yy, mag_zz"), IsEmpty());
+  EXPECT_THAT(errors(all, "mag_xx, mag_yy, mag_zz, mag_field"),
+              ElementsAre(HasSubstr("hold 'mag_zz'")));
+  EXPECT_THAT(errors(turn, "mag_xx, mag_field"), IsEmpty());
+  EXPECT_THAT(errors(turn, "mag_xx, mag_yy, mag_field"), ElementsAre(HasSubstr("hold 'mag_yy'")));
+}
+
 TEST(MagnetometerStart, LeavesOtherConfigurationsAlone) {
   Diagnostics found;
   Config config = parse_config(

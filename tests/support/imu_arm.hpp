@@ -33,7 +33,7 @@ struct SimulatedImu {
   bool rests = true;  ///< else the arm always moves
 
   static std::vector<double> pose(int n) {
-    return {0.8 * std::sin(1.0 * n), 0.9 * std::sin(2.3 * n), 1.1 * std::cos(1.7 * n)};
+    return {0.6 * std::sin(1.0 * n), 0.6 * std::sin(2.3 * n), 0.8 * std::cos(1.7 * n)};
   }
   static constexpr int kPoses = 9;
 

@@ -3,6 +3,7 @@
 #include "kinecal/config/magnetometer_start.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -65,6 +66,28 @@ struct Scatter {
   return {of.mean + bias, std::sqrt(squares + bias.squaredNorm())};
 }
 
+/// Reports a field that is free beside gains that go with it: both may shrink to nothing.
+/// @param most  gains that may be free beside it
+void check_gains(const StepConfig& step, const BlockConfig& block, std::size_t most,
+                 Diagnostics& diagnostics) {
+  std::vector<std::string> gains;
+  bool field_is_free = false;
+  for (const FreeParamConfig& free : free_parameters(step)) {
+    for (const char* gain : {"xx", "yy", "zz"}) {
+      if (free.name == block.name + "_" + gain) gains.push_back(free.name);
+    }
+    field_is_free = field_is_free || free.name == block.name + "_field";
+  }
+  if (!field_is_free || gains.size() <= most) return;
+  diagnostics.error(
+      block.place,
+      fmt::format(
+          "{} goes with the size of {}: these readings show {} of them beside it; hold '{}', "
+          "or '{}' at the strength that is known",
+          block.name + "_field", fmt::join(gains, ", "), most == 1 ? "one" : "two", gains.back(),
+          block.name + "_field"));
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -87,7 +110,14 @@ void begin_magnetometer(Config& config, std::vector<Sample>& samples, Diagnostic
     }
   }
   if (blocks.empty()) return;
-  if (const auto plane = plane_of_readings(samples)) {
+  const auto plane = plane_of_readings(samples);
+  for (const StepConfig& step : config.steps) {
+    for (const BlockConfig& block : step.error_blocks) {
+      if (block.type != MagneticField::kType) continue;
+      detail::check_gains(step, block, plane ? 1 : 2, diagnostics);
+    }
+  }
+  if (plane) {
     for (Sample& sample : samples) {
       const auto reading = detail::reading_of(sample);
       if (!reading) continue;

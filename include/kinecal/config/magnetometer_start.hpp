@@ -31,7 +31,8 @@ struct ReadingsPlane {
 
 /// Lets blocks of a magnetometer that give neither a bias nor a field begin where the readings suggest them, and puts readings of
 /// a turn about one axis into their plane.
-/// @param diagnostics  receives a note of such a plane; errors of readings that do not vary
+/// @param diagnostics  receives a note of such a plane; errors of readings that do not vary, and of soft iron that is free
+///                     beside a field that goes with it
 void begin_magnetometer(Config& config, std::vector<Sample>& samples, Diagnostics& diagnostics);
 
 }  // namespace kinecal

@@ -1,13 +1,15 @@
 // What a magnetometer reads as it turns in the field of the earth: hard and soft iron (magnetic_field).
 //
-//   r = |A (m - b)| / F - 1        A = 1 + (xx xy xz; xy yy yz; xz yz zz)
+//   r = (|A (m - b)|^2 - F^2) / (2 F0)        A = 1 + (xx xy xz; xy yy yz; xz yz zz)
 //
 // m is the reading, b the bias: hard iron, which turns with the sensor.  A undoes soft iron and what the gains of the axes
-// differ by.  F is the strength of the field.  A and F times the same number is the same residual: hold F where it is known,
-// or zz.  Of a base that turns in place, all readings are in a plane: it shows the bias within the plane, and F there.
+// differ by.  F is the strength of the field, and F0 where it begins: near the solution, r is |A (m - b)| - F.
+// A and F times the same number are zero where they were: hold F where it is known, or zz.  Of a base that turns in place, all
+// readings are in a plane: it shows the bias within the plane, and F there.  Squares, because then a bias along the normal
+// changes all residuals alike, as F does: nothing runs away along what is not shown.
 // A rotation of A is not shown by a strength: the axes of the sensor stay as they are.
-// Source: HardIronOffsetError of robot_calibration, F (r + 1) - F there; Gebre-Egziabher et al., Calibration of strapdown
-// magnetometers in the magnetic field domain, 2006.
+// Source: Gebre-Egziabher et al., Calibration of strapdown magnetometers in the magnetic field domain, 2006; with |m - b| - F,
+// HardIronOffsetError of robot_calibration.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,7 +20,7 @@ namespace kinecal {
 /// The strength of the field that a magnetometer reads, against the one there is.
 struct MagneticField {
   static constexpr const char* kType = "magnetic_field";  ///< name in configurations
-  static constexpr const char* kUnit = "1";               ///< of the residual: parts of the field
+  static constexpr const char* kUnit = "1";               ///< of the residual: microtesla
   static constexpr std::array kParameters = {
       ParameterInfo{"bias_x", "uT"}, ParameterInfo{"bias_y", "uT"},
       ParameterInfo{"bias_z", "uT"}, ParameterInfo{"xx", "1"},
@@ -34,10 +36,10 @@ struct MagneticField {
   /// Initial values of the parameters.
   [[nodiscard]] const std::array<double, kParameters.size()>& initial() const { return start; }
 
-  /// The difference of the strengths, in parts of the field.
+  /// The difference of the strengths.
   /// @param own  bias, microtesla; xx yy zz xy xz yz; field, microtesla
   /// @param m    (3) the reading, microtesla
-  /// @returns    (1)
+  /// @returns    (1) microtesla
   template <class S, class Q>
   [[nodiscard]] Eigen::Matrix<S, 1, 1> operator()(const std::array<S, kParameters.size()>& own,
                                                   const std::array<Q, 3>& m) const {
@@ -45,7 +47,7 @@ struct MagneticField {
     const Vector3<S> seen(p.x() + own[3] * p.x() + own[6] * p.y() + own[7] * p.z(),
                           p.y() + own[6] * p.x() + own[4] * p.y() + own[8] * p.z(),
                           p.z() + own[7] * p.x() + own[8] * p.y() + own[5] * p.z());
-    return Eigen::Matrix<S, 1, 1>(S(seen.norm() / own[9] - 1.0));
+    return Eigen::Matrix<S, 1, 1>(S((seen.squaredNorm() - own[9] * own[9]) / (2.0 * start.back())));
   }
 };
 

@@ -74,7 +74,10 @@ struct SensedTopics {
     }
   }
   double run = 0.0;  // each reading is a run of its own
-  for (const Sample& sample : samples) run = std::max(run, sample.conditions.at(kRun));
+  for (const Sample& sample : samples) {
+    const auto of = sample.conditions.find(kRun);
+    if (of != sample.conditions.end()) run = std::max(run, of->second);
+  }
   for (Sample& sample : of_field) {
     if (!samples.empty()) sample.conditions[kRun] = ++run;
   }

@@ -949,8 +949,9 @@ std::vector<SwitchedView> RecordedViews::planned_switches(const Standstill& time
     const Stamp middle = span.time.begin + (span.time.end - span.time.begin) / 2;
     if (span.code != 0 && ++pulses[span.code] > kMostPulses) continue;
     if (span.code == 0 && all.size() > 1 && all.back().code == 0) continue;
-    if (all.empty()) add(span.code, {span.time.begin, middle});
-    add(span.code, all.empty() ? span.time : Standstill{middle, span.time.end});
+    const bool is_first = all.empty();  // of which there are two: what differs between them moves
+    if (is_first) add(span.code, {span.time.begin, middle});
+    add(span.code, is_first && !all.empty() ? Standstill{middle, span.time.end} : span.time);
   }
   return all;
 }

@@ -52,8 +52,8 @@ std::string magnetometer_config(const std::string& base_link, std::span<const Sa
       " # Hard iron: what is magnetic and turns with it, microtesla.\n"
       " - mag_bias_x\n - mag_bias_y\n - mag_bias_z\n"
       " # The strength of the field{}.\n - mag_field\n{}"
-      "error_blocks:\n # The strength that it reads is the same all ways; the residual is a part "
-      "of it.\n - name: mag\n   type: magnetic_field\n   loss: {{type: huber, scale: 3.0}}\n",
+      "error_blocks:\n # The strength that it reads is the same all ways; residuals are in "
+      "microtesla.\n - name: mag\n   type: magnetic_field\n   loss: {{type: huber, scale: 3.0}}\n",
       is_turn ? " that turned about one axis, as on a base that turns in place"
               : " that turned about several axes",
       detail::name_to_yaml(base_link),
