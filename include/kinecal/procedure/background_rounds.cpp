@@ -87,8 +87,9 @@ struct CloudDistances {
 /// Takes the background away from the points of a block, and from what is paired with them.
 void take_away(const BlockConfig& block, const CloudDistances& found,
                std::vector<Sample>& samples) {
-  for (const auto& [number, places] : found.background) {
-    Sample& sample = samples[static_cast<std::size_t>(number)];
+  for (const auto& of_sample : found.background) {
+    const std::set<int>& places = of_sample.second;
+    Sample& sample = samples[static_cast<std::size_t>(of_sample.first)];
     const Observation* points = sample.observation(block.models[0]);
     const std::size_t count = points == nullptr ? 0 : points->features.size();
     for (Observation& seen : sample.observations) {
