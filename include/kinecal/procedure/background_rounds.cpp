@@ -44,8 +44,8 @@ constexpr std::array kWidths = {81.0, 27.0, 9.0, 3.0, 1.0};  ///< times the scal
   });
 }
 
-/// Metres beyond which points of a block are of something else.
-[[nodiscard]] double gate_of(const BlockConfig& block) {
+/// Metres beyond which points of a block are of something else, whatever the others do.
+[[nodiscard]] double widest_gate(const BlockConfig& block) {
   return kGate * block.loss.scale * block.sigma.value_or(1.0);
 }
 
