@@ -19,6 +19,7 @@
 #include "kinecal/errors/point_to_plane.hpp"
 #include "kinecal/errors/point_to_sphere.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/geometry/median.hpp"
 #include "kinecal/procedure/matched_step.hpp"
 #include "kinecal/text/counted.hpp"
 
@@ -27,8 +28,8 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-constexpr std::size_t kCloud = 10;  ///< points of a sample, more than that
-constexpr double kGate = 20.0;      ///< scales of the loss, as of blocks of meshes
+constexpr std::size_t kCloud = 10;                           ///< points of a sample, more than that
+constexpr double kGate = 20.0;                               ///< scales of the loss, at most
 constexpr std::array kWidths = {81.0, 27.0, 9.0, 3.0, 1.0};  ///< times the scale of the loss
 
 [[nodiscard]] bool is_cloud(const BlockConfig& block, std::span<const Sample> samples) {
@@ -44,14 +45,15 @@ constexpr std::array kWidths = {81.0, 27.0, 9.0, 3.0, 1.0};  ///< times the scal
   });
 }
 
-/// Metres beyond which points of a block are of something else.
-[[nodiscard]] double gate_of(const BlockConfig& block) {
+/// Metres beyond which points of a block are of something else, whatever the others do.
+[[nodiscard]] double widest_gate(const BlockConfig& block) {
   return kGate * block.loss.scale * block.sigma.value_or(1.0);
 }
 
 /// The distances of the points of a block.
 struct CloudDistances {
   std::vector<double> all;                  ///< metres
+  double gate = 0.0;                        ///< metres
   std::map<int, std::set<int>> background;  ///< places of points beyond the gate, by sample
   std::map<int, std::size_t> within;        ///< numbers of the others, by sample
 
@@ -63,9 +65,30 @@ struct CloudDistances {
   }
 };
 
+/// Four robust standard deviations of what is within the gate, narrowed until that settles.
+[[nodiscard]] double settled_gate(const std::vector<double>& distances, double widest) {
+  constexpr int kMost = 40;
+  constexpr double kRobust = 4.0 * 1.4826, kLeast = 1e-6;  // metres
+  double gate = widest;
+  for (int n = 0; n < kMost; ++n) {
+    std::vector<double> near = distances;
+    std::erase_if(near, [&](double distance) { return !(distance <= gate); });
+    if (near.empty()) return gate;
+    const double next = std::min(gate, std::max(kLeast, kRobust * median_of(std::move(near))));
+    if (next > 0.99 * gate) return gate;
+    gate = next;
+  }
+  return gate;
+}
+
 /// @param problem  of the block's step
 [[nodiscard]] CloudDistances distances_of(const BlockConfig& block, const AnyProblem& problem,
                                           const Eigen::VectorXd& values) {
+  struct Point {
+    int sample, place;
+    double distance;
+  };
+  std::vector<Point> points;
   CloudDistances found;
   (void)evaluate(problem, values, nullptr, [&](int t, int sample, const TermResiduals& rows) {
     const Term& term = problem.term(t);
@@ -73,22 +96,27 @@ struct CloudDistances {
     for (Eigen::Index i = 0; i < rows.residual.size() / term.feature_size; ++i) {
       const double distance =
           rows.residual.segment(i * term.feature_size, term.feature_size).norm();
+      points.push_back({sample, problem.feature(t, sample, i).place, distance});
       found.all.push_back(distance);
-      if (distance > gate_of(block)) {
-        found.background[sample].insert(problem.feature(t, sample, i).place);
-      } else {
-        ++found.within[sample];
-      }
     }
   });
+  found.gate = settled_gate(found.all, widest_gate(block));
+  for (const Point& point : points) {
+    if (point.distance > found.gate) {
+      found.background[point.sample].insert(point.place);
+    } else {
+      ++found.within[point.sample];
+    }
+  }
   return found;
 }
 
 /// Takes the background away from the points of a block, and from what is paired with them.
 void take_away(const BlockConfig& block, const CloudDistances& found,
                std::vector<Sample>& samples) {
-  for (const auto& [number, places] : found.background) {
-    Sample& sample = samples[static_cast<std::size_t>(number)];
+  for (const auto& of_sample : found.background) {
+    const std::set<int>& places = of_sample.second;
+    Sample& sample = samples[static_cast<std::size_t>(of_sample.first)];
     const Observation* points = sample.observation(block.models[0]);
     const std::size_t count = points == nullptr ? 0 : points->features.size();
     for (Observation& seen : sample.observations) {
@@ -108,19 +136,26 @@ void report(const BlockConfig& block, const CloudDistances& found, std::span<con
   constexpr double kFewest = 0.03, kNear = 0.25, kMostOfNear = 0.5;
   constexpr std::size_t kNamed = 5;
   if (found.all.empty()) return;  // assemble() says so
-  const double gate = gate_of(block), within = found.share(gate), near = found.share(kNear * gate);
-  std::string text = fmt::format(
-      "error block '{}': of {}, {:.1f} % lie within {:.4g} mm ({:g} times the scale of "
-      "the loss) of what they are compared with",
-      block.name, counted(found.all.size(), "point"), 100.0 * within, 1e3 * gate, kGate);
+  const double widest = widest_gate(block);
+  const double within = found.share(widest), near = found.share(kNear * widest);
+  const auto text = [&](double distance) {
+    return fmt::format(
+        "error block '{}': of {}, {:.1f} % lie within {:.4g} mm of what they are compared with, "
+        "and ",
+        block.name, counted(found.all.size(), "point"), 100.0 * found.share(distance),
+        1e3 * distance);
+  };
   if (within < kFewest || near < kMostOfNear * within) {
-    text += fmt::format(
-        ", and {:.1f} % within a quarter of that: hardly more than by chance.  Do the clouds show "
-        "it, in metres, with the joints of their time, and is it what the configuration says?",
-        100.0 * near);
-    return is_held ? diagnostics.doubt(block.place, text) : diagnostics.error(block.place, text);
+    const std::string why =
+        text(widest) +
+        fmt::format(
+            "{:.1f} % within a quarter of that: hardly more than by chance.  Do the clouds "
+            "show it, in metres, with the joints of their time, and is it what the "
+            "configuration says?",
+            100.0 * near);
+    return is_held ? diagnostics.doubt(block.place, why) : diagnostics.error(block.place, why);
   }
-  diagnostics.note(block.place, text + ", and those count");
+  diagnostics.note(block.place, text(found.gate) + "those count");
   std::vector<std::string> without;
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const int number = static_cast<int>(s);
@@ -203,7 +238,7 @@ std::vector<double> leave_out_background(const Robot& robot,
       detail::report(block, found, given, held.has_value(), diagnostics);
       // A cloud of which several blocks say what it shows is left as it is: places would shift.
       if (done.insert(block.models[0]).second) detail::take_away(block, found, samples);
-      keep_loss(block, std::move(found.all), detail::gate_of(block), kLeast);
+      keep_loss(block, std::move(found.all), found.gate, kLeast);
     }
   }
   return diagnostics.errors.size() == before ? values : std::vector<double>();

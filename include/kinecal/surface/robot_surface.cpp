@@ -193,7 +193,7 @@ class SurfaceReader {
 
   /// False, and an error, if the size of a link is impossible.
   [[nodiscard]] bool is_good(const SurfaceLink& link) {
-    constexpr double kLargest = 5.0, kSmallest = 0.005;
+    constexpr double kLargest = 30.0, kSmallest = 0.005;  // a room; a screw
     const SurfaceFacts& facts = link.tree.facts();
     const double size = (facts.high - facts.low).maxCoeff();
     std::string why;

@@ -119,7 +119,8 @@ class BaseMessages {
                                            "(geometry_msgs/PoseStamped): neither is in this bag"
                                          : "the drive of a base takes nav_msgs/Odometry, "
                                            "sensor_msgs/Imu or joint states of its wheels: none of "
-                                           "them is in this bag");
+                                           "them is in this bag; samples of a laser on a robot are "
+                                           "made by 'kinecal detect'");
       return {};
     }
     say_doubts();
