@@ -64,6 +64,8 @@ TEST_F(BaseProgram, WithoutAUrdfABaseAloneIsWritten) {
   EXPECT_THAT(read("base.urdf"), HasSubstr("<link name=\"base_link\"/>"));
   EXPECT_THAT(read("base.yaml"), HasSubstr("type: odometry_to_wall"));
   EXPECT_THAT(read("columns.yaml"), HasSubstr("  odom_yaw: odom_yaw\n"));
+  done("convert drive/drive.csv samples.yaml --columns columns.yaml");
+  done("calibrate --urdf base.urdf --config base.yaml --samples samples.yaml --output calibrated");
 }
 
 TEST_F(BaseProgram, WhatIsMissingIsSaid) {
