@@ -76,6 +76,8 @@ TEST_F(BaseProgram, WhatIsMissingIsSaid) {
   const Outcome sizes = kinecal("init --target base --from t.csv");
   EXPECT_EQ(sizes.code, 1);
   EXPECT_THAT(sizes.err, HasSubstr("--wheel-radius is required: the URDF does not have it"));
+  EXPECT_THAT(kinecal("init --target leds --track-width 1 --urdf r.urdf").err,
+              HasSubstr("--track-width goes with --target base"));
   EXPECT_THAT(kinecal("init --target base,leds --from t.csv").err,
               HasSubstr("base does not go into one configuration with others"));
   EXPECT_THAT(kinecal("init --target base --from t.csv --drive tricycle --wheel-radius 1").err,
