@@ -164,6 +164,10 @@ int capture_base(const CaptureOptions& options) {
   const BaseDrive drive = read_base_drive(options.output, diagnostics);
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
+  if (drive.samples.empty()) {
+    say(stderr, "error: {}: the base did not move\n", options.output);
+    return kBadInput;
+  }
   say("{}: {}\n", options.output, counted(drive.samples.size(), "sample"));
   const InputOptions next{
       .urdf = options.urdf, .config = options.config, .samples = {options.output}};

@@ -656,6 +656,15 @@ int init(const InitOptions& given) {
     return std::find(words.begin(), words.end(), kBaseTarget) != words.end();
   };
   if (is_base(given)) return init_base(given);
+  for (const auto& [option, is_given] :
+       {std::pair("--drive", !given.drive.empty()), std::pair("--seen", !given.seen.empty()),
+        std::pair("--sensor", !given.sensor.empty()),
+        std::pair("--wheel-radius", given.wheel_radius.has_value()),
+        std::pair("--track-width", given.track_width.has_value()),
+        std::pair("--wheelbase", given.wheelbase.has_value()),
+        std::pair("--gyro-scale", given.gyro_scale.has_value())}) {
+    if (is_given) throw InputError(fmt::format("{} goes with --target base", option));
+  }
   if (!given.poses.empty()) return init_hand_eye(given);
   if (!given.cameras.empty()) return init_cameras(given);
   if (!given.corners.empty()) throw InputError("--corners goes with --poses or --cameras");

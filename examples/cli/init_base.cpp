@@ -88,9 +88,13 @@ BaseInput read(const InitOptions& options) {
   if (in.urdf.empty()) in.urdf_text = in_bag;
   if (in.urdf_text.empty()) {
     in.urdf = beside(options, "base.urdf");
-    in.writes_urdf = true;
-    in.urdf_text = fmt::format("<robot name=\"base\">\n  <link name=\"{}\"/>\n</robot>\n",
-                               options.base.empty() ? "base_link" : options.base);
+    in.urdf_text = fmt::format(  // a robot has a joint
+        "<robot name=\"base\">\n  <link name=\"{0}\"/>\n  <link name=\"sensor\"/>\n"
+        "  <joint name=\"sensor_joint\" type=\"fixed\">\n    <parent link=\"{0}\"/>\n"
+        "    <child link=\"sensor\"/>\n  </joint>\n</robot>\n",
+        options.base.empty() ? "base_link" : options.base);
+    in.writes_urdf =
+        !std::filesystem::exists(in.urdf) || detail::read_text_file(in.urdf) != in.urdf_text;
   }
   in.robot = parse_urdf(in.urdf_text, in.urdf.empty() ? options.from.front() : in.urdf);
   in.frames.add(in.robot);
@@ -144,10 +148,13 @@ void set_mount(const InitOptions& options, const BaseInput& in, BaseAnswers& ans
   const auto pose = in.frames.pose(answers.base_link, sensor);
   if (!pose && options.sensor.empty()) return;
   if (!pose) {
-    throw InputError(fmt::format("--sensor: '{}' is not fixed on '{}'{}", sensor, answers.base_link,
-                                 did_you_mean(sensor, in.robot.link_names())));
+    throw InputError(
+        fmt::format("--sensor: '{}' {} '{}'{}", sensor,
+                    in.robot.has_link(sensor) ? "moves on" : "is not a frame that is fixed on",
+                    answers.base_link,
+                    in.robot.has_link(sensor) ? "" : did_you_mean(sensor, in.robot.link_names())));
   }
-  const auto rounded = [](double x) { return 1e-6 * std::round(1e6 * x) + 0.0; };
+  const auto rounded = [](double x) { return std::round(1e6 * x) / 1e6 + 0.0; };
   answers.mount = {rounded(pose->translation.x()), rounded(pose->translation.y()),
                    rounded(std::atan2(pose->rotation(1, 0), pose->rotation(0, 0)))};
   answers.mount_from = fmt::format("where '{}' is", sensor);
@@ -191,7 +198,9 @@ BaseAnswers answer(const InitOptions& options, const BaseInput& in) {
       say("  it has {}, too: --drive chooses\n",
           fmt::join(has.drives.begin() + 1, has.drives.end(), ", "));
     }
-    if (has.seen.size() > 1 && options.seen.empty()) say("  --seen {} chooses\n", has.seen.back());
+    if (has.seen.size() > 1 && options.seen.empty()) {
+      say("  it shows a wall, too: --seen {} chooses\n", has.seen.back());
+    }
   }
   const BaseSizes known = sizes_of_urdf(in.robot, in.urdf_text, answers.base_link, answers.drive);
   if (answers.drive == "odometry") {
@@ -234,8 +243,8 @@ int init_base(const InitOptions& options) {
   }
   write_output(options.output, initial_base(answers));
   say("wrote {}\n", options.output);
-  if (!answers.drive.empty() && !answers.mount) {
-    say("  the place of the sensor on the base is not known: fill in x, y, yaw\n");
+  if (!answers.drive.empty() && !answers.mount && answers.seen == "wall") {
+    say("  the place of the laser on the base is not known: fill in x, y, yaw\n");
   }
   InputOptions next{.urdf = in.urdf, .config = options.output, .samples = options.from};
   if (options.from.empty()) next.samples = {"drive.bag"};

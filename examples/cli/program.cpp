@@ -463,7 +463,7 @@ void add_init(CLI::App& command, InitOptions& options) {
                   "sensor_name of the camera in the samples, default: 'camera'")
       ->type_name("NAME");
   const auto add_of_base = [&](const char* name, auto& value, const char* says, const char* type) {
-    command.add_option(name, value, says)->type_name(type);
+    command.add_option(name, value, std::string("of a base: ") + says)->type_name(type);
   };
   add_of_base("--drive", options.drive,
               "odometry (as reported), differential, mecanum or tricycle (positions of wheels); "

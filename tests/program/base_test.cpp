@@ -64,6 +64,8 @@ TEST_F(BaseProgram, WithoutAUrdfABaseAloneIsWritten) {
   EXPECT_THAT(read("base.urdf"), HasSubstr("<link name=\"base_link\"/>"));
   EXPECT_THAT(read("base.yaml"), HasSubstr("type: odometry_to_wall"));
   EXPECT_THAT(read("columns.yaml"), HasSubstr("  odom_yaw: odom_yaw\n"));
+  done("convert drive/drive.csv samples.yaml --columns columns.yaml");
+  done("calibrate --urdf base.urdf --config base.yaml --samples samples.yaml --output calibrated");
 }
 
 TEST_F(BaseProgram, WhatIsMissingIsSaid) {
@@ -74,6 +76,8 @@ TEST_F(BaseProgram, WhatIsMissingIsSaid) {
   const Outcome sizes = kinecal("init --target base --from t.csv");
   EXPECT_EQ(sizes.code, 1);
   EXPECT_THAT(sizes.err, HasSubstr("--wheel-radius is required: the URDF does not have it"));
+  EXPECT_THAT(kinecal("init --target leds --track-width 1 --urdf r.urdf").err,
+              HasSubstr("--track-width goes with --target base"));
   EXPECT_THAT(kinecal("init --target base,leds --from t.csv").err,
               HasSubstr("base does not go into one configuration with others"));
   EXPECT_THAT(kinecal("init --target base --from t.csv --drive tricycle --wheel-radius 1").err,

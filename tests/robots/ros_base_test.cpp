@@ -30,7 +30,8 @@ const BaseDriving kFast = {.turn = 20.0,
                            .distance = 1.0,
                            .turn_acceleration = 400.0,
                            .acceleration = 80.0,
-                           .rest = milliseconds(150)};
+                           .rest = milliseconds(150),
+                           .silence = milliseconds(5000)};
 
 class RosBaseTest : public testing::TestWithParam<std::string> {
  protected:
@@ -120,6 +121,7 @@ TEST_P(RosBaseTest, SilenceStopsIt) {
   base_->record(milliseconds(100));
   bool is_silent = false;
   BaseDriving driving = kFast;
+  driving.silence = milliseconds(500);
   driving.turn = 3.0;  // a turn takes longer than it takes to fall silent
   const std::string why = drive(driving, [&] {
     if (!is_silent && !said_.empty()) {

@@ -20,7 +20,7 @@
 
 namespace kinecal {
 
-using Clock = std::chrono::steady_clock;
+using BaseClock = std::chrono::steady_clock;
 
 class RosBase::State {
  public:
@@ -49,10 +49,10 @@ class RosBase::State {
 
  private:
   void take(const std::string& topic) {
-    for (const detail::BridgeMessage& message : bridge.take(topic, Clock::now())) {
+    for (const detail::BridgeMessage& message : bridge.take(topic, BaseClock::now())) {
       const MessageFields fields = message.fields();
-      const auto since =
-          std::chrono::system_clock::now().time_since_epoch() - (Clock::now() - message.arrival);
+      const auto since = std::chrono::system_clock::now().time_since_epoch() -
+                         (BaseClock::now() - message.arrival);
       ++received[topic];
       record_(topic, message.type,
               std::chrono::duration_cast<std::chrono::nanoseconds>(since).count(), fields);
@@ -60,7 +60,7 @@ class RosBase::State {
       if (message.type == "sensor_msgs/LaserScan") take_scan(fields, message.arrival);
     }
   }
-  void take_odometry(const MessageFields& message, Clock::time_point arrival) {
+  void take_odometry(const MessageFields& message, BaseClock::time_point arrival) {
     const auto at = [&](const char* field) {
       return detail::number_at(message, std::string("pose.pose.") + field);
     };
@@ -71,7 +71,7 @@ class RosBase::State {
     odometry = {at("position.x"), at("position.y"),
                 before + std::remainder(yaw - before, 2.0 * std::numbers::pi), arrival};
   }
-  void take_scan(const MessageFields& message, Clock::time_point arrival) {
+  void take_scan(const MessageFields& message, BaseClock::time_point arrival) {
     constexpr double kAhead = 0.5;  // radians
     double angle = detail::number_at(message, "angle_min");
     const double step = detail::number_at(message, "angle_increment"),
@@ -99,11 +99,11 @@ RosBase::~RosBase() = default;
 
 void RosBase::record(std::chrono::milliseconds time) {
   constexpr std::chrono::milliseconds kStep{10};
-  for (const auto end = Clock::now() + time;;) {
+  for (const auto end = BaseClock::now() + time;;) {
     state_->take_all();
-    const auto left = end - Clock::now();
-    if (left <= Clock::duration::zero()) return;
-    std::this_thread::sleep_for(std::min<Clock::duration>(left, kStep));
+    const auto left = end - BaseClock::now();
+    if (left <= BaseClock::duration::zero()) return;
+    std::this_thread::sleep_for(std::min<BaseClock::duration>(left, kStep));
   }
 }
 
@@ -183,22 +183,22 @@ class RunDriver {
   /// @returns  why it ended early; empty if it did not
   [[nodiscard]] std::string drive(const DrivenRun& run) {
     start_ = *base_.odometry();
-    const auto began = Clock::now();
+    const auto began = BaseClock::now();
     const double acceleration =
         run.turn != 0.0 ? driving_.turn_acceleration : driving_.acceleration;
     const double limit = 3.0 * run.amount / run.speed() + 5.0;  // seconds
     double speed = 0.0;
     std::string why;
-    for (auto last = began; why.empty(); last = Clock::now()) {
+    for (auto last = began; why.empty(); last = BaseClock::now()) {
       if (gone(run) >= run.amount - 0.5 * speed * speed / acceleration) break;
       if (run.ahead > 0.0 && base_.ahead()->nearest < driving_.least_range) break;
-      const double seconds = std::chrono::duration<double>(Clock::now() - last).count();
+      const double seconds = std::chrono::duration<double>(BaseClock::now() - last).count();
       speed = std::min(run.speed(), speed + acceleration * std::max(seconds, 0.02));
       base_.command(std::copysign(run.ahead == 0.0 ? 0.0 : speed, run.ahead),
                     std::copysign(run.turn == 0.0 ? 0.0 : speed, run.turn));
       base_.record(kCommandPeriod);
       why = why_stop(run);
-      if (why.empty() && Clock::now() - began > std::chrono::duration<double>(limit)) {
+      if (why.empty() && BaseClock::now() - began > std::chrono::duration<double>(limit)) {
         why = fmt::format(
             "after {:.0f} s, the base has gone {:.2f} of {:.2f} {}: does something else command "
             "it, "
@@ -212,7 +212,7 @@ class RunDriver {
 
   /// Commands zero until the base is at rest.
   [[nodiscard]] std::string rest() {
-    for (const auto end = Clock::now() + driving_.rest; Clock::now() < end;) {
+    for (const auto end = BaseClock::now() + driving_.rest; BaseClock::now() < end;) {
       base_.command(0.0, 0.0);
       base_.record(kCommandPeriod);
       if (is_interrupted_()) return "interrupted";
@@ -223,8 +223,8 @@ class RunDriver {
  private:
   [[nodiscard]] std::string why_stop(const DrivenRun& run) const {
     if (is_interrupted_()) return "interrupted";
-    const auto is_silent = [&](Clock::time_point arrival) {
-      return Clock::now() - arrival > driving_.silence;
+    const auto is_silent = [&](BaseClock::time_point arrival) {
+      return BaseClock::now() - arrival > driving_.silence;
     };
     const auto silent = [&](const char* what) {
       return fmt::format("no {} for {} ms: the base was stopped", what, driving_.silence.count());
@@ -245,10 +245,11 @@ class RunDriver {
                                     const std::function<bool()>& is_interrupted,
                                     const std::function<void(const std::string&)>& say) {
   RunDriver driver(base, driving, is_interrupted);
-  for (const auto end = Clock::now() + driving.rest; Clock::now() < end || !base.odometry();) {
+  for (const auto end = BaseClock::now() + driving.rest;
+       BaseClock::now() < end || !base.odometry();) {
     base.record(kCommandPeriod);
     if (is_interrupted()) return "interrupted";
-    if (!base.odometry() && Clock::now() > end + driving.silence) return base.why_no_odometry();
+    if (!base.odometry() && BaseClock::now() > end + driving.silence) return base.why_no_odometry();
   }
   std::vector<DrivenRun> runs;
   for (const double speed : {driving.turn / 3.0, driving.turn}) {

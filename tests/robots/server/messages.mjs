@@ -55,10 +55,6 @@ const types = {
     "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n" +
     "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n" +
     "float64[9] linear_acceleration_covariance",
-  "sensor_msgs/LaserScan": () =>
-    "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n" +
-    "float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n" +
-    "float32[] ranges\nfloat32[] intensities",
   "trajectory_msgs/JointTrajectoryPoint": (r) =>
     "float64[] positions\nfloat64[] velocities\nfloat64[] accelerations\nfloat64[] effort\n" +
     `${duration(r)} time_from_start`,

@@ -94,7 +94,7 @@ function look() {
   const at = header(now + state.imageLead, "camera_optical_frame");
   image({ header: at, ...robot.image(now) });
   cloud({ header: at, ...robot.cloud(now) });
-  scan({
+  if (!base) scan({
     header: header(now, "laser_link"), angle_min: -0.5, angle_max: 0.5, angle_increment: 0.25, time_increment: 0.001,
     scan_time: 0.04, range_min: 0.1, range_max: 10, ranges: [1, NaN, 2, Infinity, 20], intensities: [],
   });
@@ -199,7 +199,6 @@ if (options.base) {
   base = new Base(options.base, seconds());
   const odom = topic("/odom", "nav_msgs/Odometry");
   const imu = topic("/imu", "sensor_msgs/Imu");
-  const scan = topic("/base_scan", "sensor_msgs/LaserScan");
   const read = reader("geometry_msgs/Twist", ros2);
   actions.set("/cmd_vel", (data) => base.command(read.readMessage(data), seconds()));
   setInterval(() => {

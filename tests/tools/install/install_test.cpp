@@ -352,7 +352,7 @@ TEST_F(InstallBase, ScalesAloneAndARolloutAreSaid) {
       diagnostics_.warnings,
       ElementsAre(HasSubstr("track_width is not set: base_calibration.yaml has track_width_scale "
                             "1.02, not odom; give the error block the driver's track_width"),
-                  HasSubstr("rollout_scale 0.98 is not set")));
+                  HasSubstr("rollout_scale 0.98: not set, as Fetch's launch file has no place")));
   EXPECT_THAT(launch(), HasSubstr("value=\"0.37476\""));
 }
 

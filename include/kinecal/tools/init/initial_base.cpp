@@ -103,7 +103,8 @@ template <class Has>
 
 /// One line of the free parameters.
 [[nodiscard]] std::string free_line(const std::string& name, const std::string& comment) {
-  return fmt::format("- {:<28}{}\n", name, comment.empty() ? "" : "# " + comment);
+  if (comment.empty()) return "- " + name + "\n";
+  return fmt::format("- {:<28}# {}\n", name, comment);
 }
 [[nodiscard]] std::string held_line(const std::string& name, const std::string& why) {
   return "# held: " + name + ": " + why + "\n";
@@ -287,7 +288,7 @@ BaseSizes sizes_of_urdf(const Robot& robot, const std::string& urdf_text,
     if (found != wheels.end())
       sizes.wheel_radius = detail::radius_of(found->second->child, urdf_text);
   }
-  const auto rounded = [](double metres) { return 1e-6 * std::round(1e6 * metres); };
+  const auto rounded = [](double metres) { return std::round(1e6 * metres) / 1e6; };
   return {rounded(sizes.wheel_radius), rounded(sizes.track_width), rounded(sizes.wheelbase)};
 }
 

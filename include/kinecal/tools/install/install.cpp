@@ -153,13 +153,16 @@ void add_base_settings(const ResultFolder& result, const LaunchText& launch,
   };
   set(launch_key::kTrackWidth, "odom", "track_width_scale", false);
   set(launch_key::kGyroScale, "imu", "imu_scale", true);
+  std::string rollout;
   for (const char* scale : {"rollout_scale", "left_rollout_scale", "right_rollout_scale"}) {
     if (value(scale).value_or(1.0) == 1.0) continue;
-    diagnostics.warnings.push_back(fmt::format(
-        "{} {} is not set: Fetch's launch file has no place for it; with the track width that is "
-        "set, turns are right, and distances are not",
-        scale, python_number(*value(scale))));
+    rollout += fmt::format("{}{} {:.6g}", rollout.empty() ? "" : ", ", scale, *value(scale));
   }
+  if (rollout.empty()) return;
+  diagnostics.warnings.push_back(
+      rollout +
+      ": not set, as Fetch's launch file has no place for it; with the track width that is set, "
+      "turns are right, and distances are not");
 }
 
 /// The settings of a result.
