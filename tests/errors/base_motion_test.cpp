@@ -19,7 +19,7 @@ static_assert(kResiduals<DifferentialToPose> == 3 && kResiduals<DifferentialToWa
 
 using Motion = PlanarMotion<double>;
 
-constexpr double kRounding = 1e-12;
+constexpr double kMotionRounding = 1e-12;
 
 TEST(BaseBlocks, KeepTheLaws) {
   EXPECT_EQ(check_block(DifferentialToPose{}), kLawsHold);
@@ -70,8 +70,8 @@ Eigen::VectorXd residual(const std::vector<double>& at, double wrong = 0.0) {
 
 template <class Pose, class Wall>
 void expect_zero_at_the_truth(const std::vector<double>& at) {
-  EXPECT_LT(residual<Pose>(at).norm(), kRounding);
-  EXPECT_LT(residual<Wall>(at).norm(), kRounding);
+  EXPECT_LT(residual<Pose>(at).norm(), kMotionRounding);
+  EXPECT_LT(residual<Wall>(at).norm(), kMotionRounding);
   EXPECT_GT(residual<Pose>(at, 0.01).norm(), 1e-4);
   EXPECT_GT(residual<Wall>(at, 0.01).norm(), 1e-4);
 }
@@ -92,11 +92,11 @@ TEST(BaseBlocks, TakeFullTurns) {
   const double turned = 1.02 * full + 0.003 * 4.0;
   EXPECT_NEAR(GyroToPose{}(own, std::array{full, 4.0, 0.0, 0.0,
                                            std::remainder(turned, 2.0 * std::numbers::pi), 0.0})(0),
-              0.0, kRounding);
+              0.0, kMotionRounding);
   EXPECT_NEAR(
       GyroToWall{}(own, std::array{full, 4.0, 0.0, 0.0,
                                    -std::remainder(turned, 2.0 * std::numbers::pi), 0.0})(0),
-      0.0, kRounding);
+      0.0, kMotionRounding);
 }
 
 /// The odometry of a base that turns and drives is that of its wheels, to scale.
@@ -108,9 +108,9 @@ TEST(BaseBlocks, OdometryToScaleIsThatOfTheWheels) {
                moved = wheels.motion(truth.data(), at.data());
   const std::array<double, 6> odometry{reported.x, reported.y, reported.angle(), 0.0, 0.0, 0.0};
   const Motion scaled = ReportedOdometry{}.motion(truth.data(), odometry.data());
-  EXPECT_NEAR(scaled.x, moved.x, kRounding);
-  EXPECT_NEAR(scaled.y, moved.y, kRounding);
-  EXPECT_NEAR(scaled.angle(), moved.angle(), kRounding);
+  EXPECT_NEAR(scaled.x, moved.x, kMotionRounding);
+  EXPECT_NEAR(scaled.y, moved.y, kMotionRounding);
+  EXPECT_NEAR(scaled.angle(), moved.angle(), kMotionRounding);
 }
 
 /// To the left and straight ahead, by hand.
@@ -119,18 +119,18 @@ TEST(BaseDrives, MoveAsWheelsDo) {
   const std::array<double, 3> own{1.0, 1.0, 1.0};
   const std::array<double, 8> left{-1.0, 1.0, 1.0, -1.0};
   Motion moved = mecanum.motion(own.data(), left.data());
-  EXPECT_NEAR(moved.y, 0.05, kRounding);
-  EXPECT_NEAR(moved.x, 0.0, kRounding);
+  EXPECT_NEAR(moved.y, 0.05, kMotionRounding);
+  EXPECT_NEAR(moved.x, 0.0, kMotionRounding);
   const std::array<double, 8> turn{-1.0, 1.0, -1.0, 1.0};
   moved = mecanum.motion(own.data(), turn.data());
-  EXPECT_NEAR(moved.angle(), 0.05 / 0.4, kRounding);
+  EXPECT_NEAR(moved.angle(), 0.05 / 0.4, kMotionRounding);
   const TricycleDrive tricycle{0.1, 1.2};
   const std::array<double, 4> steered{1.0, 1.0, 1.0, 0.0};
   const double right_angle = 0.5 * std::numbers::pi;
   const std::array<double, 4> at{3.0, right_angle, 0.0, right_angle};
   moved = tricycle.motion(steered.data(), at.data());  // about the middle of the axle
-  EXPECT_NEAR(std::hypot(moved.x, moved.y), 0.0, kRounding);
-  EXPECT_NEAR(moved.angle(), 0.3 / 1.2, kRounding);
+  EXPECT_NEAR(std::hypot(moved.x, moved.y), 0.0, kMotionRounding);
+  EXPECT_NEAR(moved.angle(), 0.3 / 1.2, kMotionRounding);
 }
 
 }  // namespace

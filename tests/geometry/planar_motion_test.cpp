@@ -11,7 +11,7 @@ namespace {
 
 using Motion = PlanarMotion<double>;
 
-constexpr double kRounding = 1e-12;
+constexpr double kOfRounding = 1e-12;
 
 TEST(PlanarMotions, ArcsAreTheLimitOfSmallSteps) {
   constexpr int kSteps = 100'000;
@@ -30,15 +30,15 @@ TEST(PlanarMotions, ArcsAreTheLimitOfSmallSteps) {
     EXPECT_NEAR(arc.cosine, steps.cosine, kOfSteps) << turn;
     if (std::abs(turn) > std::numbers::pi) continue;
     const Vector3<double> back = planar_log(arc);
-    EXPECT_TRUE(back.isApprox(Vector3<double>(0.4, -0.1, turn), kRounding)) << back.transpose();
+    EXPECT_TRUE(back.isApprox(Vector3<double>(0.4, -0.1, turn), kOfRounding)) << back.transpose();
   }
 }
 
 TEST(PlanarMotions, TheInverseUndoesThem) {
   const Motion motion = Motion::at(0.3, -0.8, 2.4), back = motion * motion.inverse();
-  EXPECT_NEAR(back.x, 0.0, kRounding);
-  EXPECT_NEAR(back.y, 0.0, kRounding);
-  EXPECT_NEAR(back.angle(), 0.0, kRounding);
+  EXPECT_NEAR(back.x, 0.0, kOfRounding);
+  EXPECT_NEAR(back.y, 0.0, kOfRounding);
+  EXPECT_NEAR(back.angle(), 0.0, kOfRounding);
 }
 
 }  // namespace
