@@ -243,14 +243,14 @@ std::string line_of(const Episode& episode) {
   if (!episode.refused.empty())
     return fmt::format("{}: refused: {}\n", episode.name, episode.refused);
   if (episode.is_consistent) {
-    return fmt::format("{}: consistent (p = {:.2g})\n", episode.name, episode.probability);
+    return fmt::format("{}: consistent ({})\n", episode.name, chance_text(episode.probability));
   }
   std::string text;
   for (std::size_t i = 0; i < episode.moved.size(); ++i) {
     text += (i == 0 ? "" : ", or ") + episode.movers[i] + " by " + change_text(episode.moved[i]);
   }
-  return fmt::format("{}: not consistent: {} (p = {:.1g})\n", episode.name,
-                     text.empty() ? episode.reason : text, episode.probability);
+  return fmt::format("{}: not consistent: {} ({})\n", episode.name,
+                     text.empty() ? episode.reason : text, chance_text(episode.probability));
 }
 
 Json json_of(const Episode& episode) {

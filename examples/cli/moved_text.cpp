@@ -48,4 +48,9 @@ std::string length_text(const std::vector<std::pair<double, double>>& changes, c
   return reading(length, unit) + per + " +- " + reading(std::sqrt(variance), unit);
 }
 
+std::string chance_text(double probability) {
+  constexpr double kLeast = 1e-6;
+  return probability < kLeast ? "p < 1e-6" : fmt::format("p = {:.2g}", probability);
+}
+
 }  // namespace kinecal::cli

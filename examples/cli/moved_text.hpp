@@ -32,4 +32,7 @@ struct NamedChange {
 [[nodiscard]] std::string length_text(const std::vector<std::pair<double, double>>& changes,
                                       const char* unit, const std::string& per = "");
 
+/// "p = 0.03", "p < 1e-6": a probability by chance.
+[[nodiscard]] std::string chance_text(double probability);
+
 }  // namespace kinecal::cli

@@ -77,32 +77,32 @@ std::string why(const SeenRobot& robot) {
   if (!robot.fault.empty()) return robot.fault;
   const RobotFinding& of = robot.finding;
   if (of.usable == 0) {
-    return of.refused == 0
-               ? "no recording yet"
-               : "all of " + counted(static_cast<std::size_t>(of.refused), "recording") +
-                     " refused: " + robot.history.recordings.back().reason;
+    return of.refused == 0 ? "no recording yet"
+                           : counted(static_cast<std::size_t>(of.refused), "recording") +
+                                 " refused, the last: " + robot.history.recordings.back().reason;
   }
   const std::string on = day_text(of.last->time);
   std::string text;
   if (of.drift) {
     std::string alike;
     for (const std::string& other : of.drift->alike) alike += " or '" + other + "'";
-    text = fmt::format("{}{} drifts by {} (p = {:.1g} among all robots, {})", robot.mover, alike,
-                       change_text(weekly(*of.drift), " a week"), of.drift->probability,
-                       counted(static_cast<std::size_t>(of.drift->line.recordings), "recording"));
+    text =
+        fmt::format("{}{} drifts by {} ({} among all robots, {})", robot.mover, alike,
+                    change_text(weekly(*of.drift), " a week"), chance_text(of.drift->probability),
+                    counted(static_cast<std::size_t>(of.drift->line.recordings), "recording"));
   } else if (of.has_moved && of.moved != nullptr) {
-    text = fmt::format("{} has moved by {} (p = {:.1g} among all robots, {})", robot.mover,
-                       change_text(moved_by(*of.moved)), of.probability, on);
+    text = fmt::format("{} has moved by {} ({} among all robots, {})", robot.mover,
+                       change_text(moved_by(*of.moved)), chance_text(of.probability), on);
   } else if (of.has_moved) {
     text = fmt::format(
-        "{}{} does not fit, and nothing that moved alone explains it (p = {:.1g} among all robots, "
+        "{}{} does not fit, and nothing that moved alone explains it ({} among all robots, "
         "{})",
         "'" + of.last->name + "'", of.last->reason.empty() ? "" : ": " + of.last->reason,
-        of.probability, on);
+        chance_text(of.probability), on);
   } else {
-    text = fmt::format("{}, the last on {} (p = {:.2g})",
+    text = fmt::format("{}, the last on {} ({})",
                        counted(static_cast<std::size_t>(of.usable), "recording"), on,
-                       of.last->probability);
+                       chance_text(of.last->probability));
     if (of.last->state != RecordingState::holds) {
       text += ", which is chance among so many: record another";
     }

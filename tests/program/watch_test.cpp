@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -137,6 +138,22 @@ TEST_F(Watched, ReadsOnlyWhatIsNewAndWhole) {
   EXPECT_EQ(other.code, 1);
   EXPECT_THAT(other.err,
               HasSubstr("error: fleet/history.sqlite: is not a history of 'kinecal watch'"));
+}
+
+TEST_F(Watched, WatchesUntilItIsAskedToEnd) {
+  add_robot("fleet/arm", 100);
+  add_night("fleet/arm", 1, 1);
+  const Outcome asked = test::run_and_send(
+      folder_, test::kinecal_program() + " watch fleet --settle 0 --interval 0.1 --json", SIGTERM,
+      [&] {
+        if (read("out.txt").find("1 recording,") == std::string::npos) return false;
+        if (!fs::exists(folder_ / "fleet/arm/recordings/night_100.yaml"))
+          add_night("fleet/arm", 0, 2);
+        return read("out.txt").find("2 recordings,") != std::string::npos;
+      });
+  EXPECT_EQ(asked.code, 130) << asked.out << asked.err;
+  EXPECT_EQ(std::count(asked.out.begin(), asked.out.end(), '\n'), 2)
+      << "a line when something is new: " << asked.out;
 }
 
 TEST_F(Watched, SaysWhatMovedUntilTheRobotIsCalibratedAgain) {
