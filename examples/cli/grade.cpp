@@ -184,8 +184,7 @@ class HeldOut {
       out.push_back(worst);
       std::erase(used_, worst);
     }
-    if (out.empty()) return;
-    const StoredResult result = calibrated(used_);
+    const StoredResult result = calibrated(used_, true);
     for (const std::size_t i : out) judge(result, options_, level, episodes_[i]);
   }
 
@@ -199,7 +198,7 @@ class HeldOut {
       for (std::size_t i = 0; i < used_.size(); ++i) {
         if (i % folds != fold) others.push_back(used_[i]);
       }
-      const StoredResult result = calibrated(others);
+      const StoredResult result = calibrated(others, false);
       for (std::size_t i = fold; i < used_.size(); i += folds) {
         judge(result, options_, level, episodes_[used_[i]]);
       }
@@ -211,7 +210,8 @@ class HeldOut {
     });
   }
 
-  [[nodiscard]] StoredResult calibrated(const std::vector<std::size_t>& from) const {
+  /// @param is_last  its verdict counts; before, some of the episodes are those to be found
+  [[nodiscard]] StoredResult calibrated(const std::vector<std::size_t>& from, bool is_last) const {
     CalibrationSetup setup = input_.setup;
     for (const std::size_t i : from) {
       const std::vector<Sample>& samples = episodes_[i].samples;
@@ -223,7 +223,7 @@ class HeldOut {
     PreparedCalibration prepared = prepare(std::move(setup), calibrating);
     if (!prepared.diagnostics.errors.empty()) throw InputError(prepared.diagnostics.errors.front());
     const CalibratedRobot solved = detail::solve_and_judge(std::move(prepared), calibrating);
-    if (!solved.is_usable() || solved.assessments.empty()) {
+    if ((is_last && !solved.is_usable()) || solved.assessments.empty()) {
       throw InputError(
           "the episodes cannot be calibrated together: " +
           (solved.judgement.reasons.empty() ? "do not use" : solved.judgement.reasons.front()) +

@@ -315,6 +315,7 @@ void write(const WatchOptions& options, const std::vector<SeenRobot>& robots,
 int watch(const WatchOptions& options) {
   if (!options.report.empty()) check_report(options.report, {options.history}, true);
   const Interruption interruption;
+  (void)robots_in(options.tree, {options.result, options.recordings});  // before there is a history
   Watch robots(options);
   std::string before;
   try {
