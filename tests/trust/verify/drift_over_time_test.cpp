@@ -55,7 +55,7 @@ TEST(DriftOverTime, HasADeviationThatCovers95Percent) {
 }
 
 TEST(DriftOverTime, FindsTheOneOfFiftyRobotsThatDriftsAndNoOther) {
-  constexpr int kRobots = 50, kMovers = 8, kFleets = 4;
+  constexpr int kRobots = 50, kMovers = 8, kFleets = 2;
   std::mt19937 random(11);
   for (int fleet = 0; fleet < kFleets; ++fleet) {
     std::vector<MoverLine> lines;
