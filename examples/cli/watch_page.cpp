@@ -273,9 +273,17 @@ Json watch_json(const std::vector<SeenRobot>& robots) {
 std::string watch_page(const std::string& tree, const std::vector<SeenRobot>& robots) {
   std::vector<std::vector<std::string>> rows = {{"robot", "state", "recordings", "refused", "why"}};
   std::vector<Chart> charts;
-  bool is_good = true;
-  for (const SeenRobot& robot : robots) {
-    is_good = is_good && robot.fault.empty() && robot.decision.state != FleetState::recalibrate;
+  std::vector<const SeenRobot*> sorted;  // those that need somebody first
+  for (const SeenRobot& robot : robots) sorted.push_back(&robot);
+  const auto rank = [](const SeenRobot* of) {
+    return of->fault.empty() ? -static_cast<int>(of->decision.state) : -4;
+  };
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](const SeenRobot* a, const SeenRobot* b) { return rank(a) < rank(b); });
+  const bool is_good =
+      rank(sorted.front()) > -static_cast<int>(FleetState::recalibrate);  // there is a robot
+  for (const SeenRobot* seen : sorted) {
+    const SeenRobot& robot = *seen;
     rows.push_back({robot.name, state_text(robot), std::to_string(robot.finding.usable),
                     std::to_string(robot.finding.refused), why(robot)});
     Chart chart = chart_of(robot, charts.size() + 1);
