@@ -13,6 +13,7 @@
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/procedure/calibrate_robot.hpp"
 #include "kinecal/procedure/surface_rounds.hpp"
+#include "kinecal/text/characters.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/tools/watch/fleet.hpp"
 #include "moved_text.hpp"
@@ -241,7 +242,7 @@ class HeldOut {
 
 std::string line_of(const Episode& episode) {
   if (!episode.refused.empty())
-    return fmt::format("{}: refused: {}\n", episode.name, episode.refused);
+    return fmt::format("{}: refused: {}\n", episode.name, detail::one_line(episode.refused));
   if (episode.is_consistent) {
     return fmt::format("{}: consistent ({})\n", episode.name, chance_text(episode.probability));
   }

@@ -16,6 +16,7 @@
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/procedure/surface_rounds.hpp"
+#include "kinecal/text/characters.hpp"
 #include "kinecal/tools/watch/fleet.hpp"
 #include "kinecal/trust/verify/pose_change.hpp"
 #include "moved_text.hpp"
@@ -52,7 +53,7 @@ WatchedChange watched(const Mover& mover, const ParameterTable& table) {
 /// Refuses a recording.
 void refuse(WatchedRecording& recording, const std::string& reason) {
   recording.state = RecordingState::refused;
-  recording.reason = with_hanging_lines(reason);
+  recording.reason = detail::one_line(reason);
 }
 
 /// What verify says of a recording.
@@ -164,7 +165,7 @@ class Watch {
       } catch (const HistoryFault&) {
         throw;
       } catch (const std::exception& error) {
-        of.fault = with_hanging_lines(error.what());
+        of.fault = detail::one_line(error.what());
       }
     }
     judge();

@@ -261,7 +261,8 @@ std::string summary_of(const std::vector<SeenRobot>& robots) {
       ++hold;
     }
   }
-  return fmt::format("{} of {} hold{}", hold, counted(robots.size(), "robot"), recalibrate);
+  return fmt::format("{} of {} {}{}", hold, counted(robots.size(), "robot"),
+                     hold == 1 ? "holds" : "hold", recalibrate);
 }
 
 Json watch_json(const std::vector<SeenRobot>& robots) {

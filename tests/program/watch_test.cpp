@@ -93,7 +93,8 @@ TEST_F(Watched, NamesTheOneRobotThatDriftsAndNoOther) {
                     HasSubstr("deg a week +- "), HasSubstr("'tool' in 'tracker_frame' is off by "),
                     HasSubstr("limit 0.3 mm")));
   EXPECT_THAT(found.out, HasSubstr(std::to_string(robots - 1) + " of " + std::to_string(robots) +
-                                   " robots hold; recalibrate arm_1\n"));
+                                   (robots == 2 ? " robots holds" : " robots hold") +
+                                   "; recalibrate arm_1\n"));
   EXPECT_THAT(read("fleet.html"), HasSubstr("change since the calibration"));
 
   const auto again = std::chrono::steady_clock::now();  // nothing is verified again
