@@ -29,9 +29,11 @@ struct DriftSeries {
   std::vector<DriftPoint> points;  ///< by time
   /// Slope, in the unit by seconds, through `level` at `origin`; nullopt: no line.
   struct Line {
-    double origin = 0.0, level = 0.0, slope = 0.0;
+    double origin = 0.0;  ///< seconds since 1970
+    double level = 0.0;   ///< there
+    double slope = 0.0;   ///< a second
   };
-  std::optional<Line> line = {};
+  std::optional<Line> line = {};  ///< the drift
 };
 
 /// Draws it; weeks from the first recording.

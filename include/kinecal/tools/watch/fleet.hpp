@@ -21,13 +21,15 @@ namespace kinecal {
 
 /// The folders of a robot in its own.
 struct WatchedFolders {
-  std::string result = "result", recordings = "recordings";
+  std::string result = "result";          ///< what calibrate wrote
+  std::string recordings = "recordings";  ///< files that appear
 };
 
 /// A robot in a tree of folders.
 struct WatchedRobot {
-  std::string name;  ///< its path in the tree: "line_1/arm_3"; of the tree itself, its name
-  std::string result, recordings;  ///< paths
+  std::string name;        ///< its path in the tree: "line_1/arm_3"; of the tree itself, its name
+  std::string result;      ///< path of that folder
+  std::string recordings;  ///< path of that folder
 };
 
 /// The robots in a tree, in natural order: folders that have one of these folders.
@@ -63,16 +65,16 @@ struct RecordingFiles {
 
 /// The recordings of a robot with the result in force, by time.
 struct RobotHistory {
-  std::string name;  ///< of the robot
-  std::vector<WatchedRecording> recordings;
+  std::string name;                          ///< of the robot
+  std::vector<WatchedRecording> recordings;  ///< with this result, by time
 };
 
 /// A drift that is no chance.
 struct FoundDrift {
   WatchedChange of;                ///< owner and parameters; no numbers
   std::vector<std::string> alike;  ///< other owners that explain the recordings as well
-  DriftLine line;
-  double probability = 1.0;  ///< of such a drift, of anything of any robot, by chance
+  DriftLine line;                  ///< of the changes of its parameters
+  double probability = 1.0;        ///< of such a drift, of anything of any robot, by chance
 };
 
 /// What the recordings of a robot say.
@@ -106,9 +108,9 @@ struct WatchLimits {
 
 /// The state of a robot, and why.
 struct RobotDecision {
-  FleetState state = FleetState::not_known;
-  std::optional<double> change = {};  ///< size of the change in the last recording
-  std::optional<When> passes = {};    ///< when a drift passes the limit
+  FleetState state = FleetState::not_known;  ///< what is to be done
+  std::optional<double> change = {};         ///< size of the change in the last recording
+  std::optional<When> passes = {};           ///< when a drift passes the limit
 };
 
 /// The change whose size matters: of the drift, or of the last recording; empty: none.

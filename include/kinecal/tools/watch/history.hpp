@@ -42,18 +42,18 @@ enum class RecordingState { holds, does_not_hold, refused };
 
 /// A recording that was looked at.
 struct WatchedRecording {
-  std::string name = {};      ///< its path below the recordings of its robot
-  std::string checksum = {};  ///< SHA-256 of its content
-  std::int64_t size = 0;      ///< bytes
-  std::int64_t modified = 0;  ///< when the file was last written, nanoseconds
-  double time = 0.0;          ///< when it was recorded, seconds since 1970
-  RecordingState state = RecordingState::refused;
-  std::string reason = {};                  ///< why it was refused
-  int samples = 0;                          ///< number of them
-  double statistic = 0.0;                   ///< X, see Drift
-  double freedom = 0.0;                     ///< its degrees of freedom
-  double probability = 1.0;                 ///< of a larger one by chance
-  std::vector<WatchedChange> changes = {};  ///< of all movers
+  std::string name = {};                           ///< its path below the recordings of its robot
+  std::string checksum = {};                       ///< SHA-256 of its content
+  std::int64_t size = 0;                           ///< bytes
+  std::int64_t modified = 0;                       ///< when the file was last written, nanoseconds
+  double time = 0.0;                               ///< when it was recorded, seconds since 1970
+  RecordingState state = RecordingState::refused;  ///< what became of it
+  std::string reason = {};                         ///< why it was refused
+  int samples = 0;                                 ///< number of them
+  double statistic = 0.0;                          ///< X, see Drift
+  double freedom = 0.0;                            ///< its degrees of freedom
+  double probability = 1.0;                        ///< of a larger one by chance
+  std::vector<WatchedChange> changes = {};         ///< of all movers
 };
 
 namespace detail {
@@ -87,7 +87,8 @@ class History {
 
   /// A recording of a robot.
   struct Place {
-    std::string robot, name;
+    std::string robot;  ///< name of the robot
+    std::string name;   ///< of the recording
   };
   /// The one, of any robot, that has this content and was not refused.
   [[nodiscard]] std::optional<Place> with_content(const std::string& checksum) const;
