@@ -23,16 +23,26 @@ TEST(BaseConditions, JointsOfWheels) {
 }
 
 TEST(BaseConditions, ColumnsOfTables) {
-  for (const auto& [column, condition] :
-       {std::pair("left_wheel", "left_wheel"), std::pair("enc_l", "left_wheel"),
-        std::pair("ticks_right", "right_wheel"), std::pair("right", "right_wheel"),
-        std::pair("x", "track_x"), std::pair("mocap.theta", "track_yaw"),
-        std::pair("scan_y [m]", "track_y"), std::pair("odom_pose_x", "odom_x"),
-        std::pair("odom.heading [rad]", "odom_yaw"), std::pair("gyro_yaw", "gyro_yaw"),
-        std::pair("imu_z", "gyro_yaw"), std::pair("wall_angle", "wall_angle"),
-        std::pair("wall distance", "wall_distance"), std::pair("t [s]", "time"),
-        std::pair("run", "run"), std::pair("temperature", ""), std::pair("imu_accel_z", ""),
-        std::pair("battery", ""), std::pair("", "")}) {
+  for (const auto& [column, condition] : {std::pair("left_wheel", "left_wheel"),
+                                          std::pair("enc_l", "left_wheel"),
+                                          std::pair("ticks_right", "right_wheel"),
+                                          std::pair("right", "right_wheel"),
+                                          std::pair("x", "track_x"),
+                                          std::pair("mocap.theta", "track_yaw"),
+                                          std::pair("scan_y [m]", "track_y"),
+                                          std::pair("odom_pose_x", "odom_x"),
+                                          std::pair("odom.heading [rad]", "odom_yaw"),
+                                          std::pair("gyro_yaw", "gyro_yaw"),
+                                          std::pair("imu_z", "gyro_yaw"),
+                                          std::pair("wall_angle", "wall_angle"),
+                                          std::pair("wall distance", "wall_distance"),
+                                          std::pair("t [s]", "time"),
+                                          std::pair("yaw_deg", "track_yaw"),
+                                          std::pair("run", "run"),
+                                          std::pair("temperature", ""),
+                                          std::pair("imu_accel_z", ""),
+                                          std::pair("battery", ""),
+                                          std::pair("", "")}) {
     EXPECT_EQ(base_condition(column), condition) << column;
   }
   for (const std::string_view wheel : kWheelConditions) EXPECT_EQ(base_condition(wheel), wheel);

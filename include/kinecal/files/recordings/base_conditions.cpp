@@ -92,7 +92,7 @@ std::string base_condition(std::string_view text) {
       name.only() == "right") {
     return detail::wheel_of(name, true);
   }
-  name.take({"rad", "m", "s"});  // units
+  name.take({"rad", "deg", "degrees", "m", "mm", "s"});  // units
   if (const std::string word = name.only();
       word == "time" || word == "t" || word == "stamp" || word == "timestamp" || word == "run") {
     return word == "run" ? word : "time";
