@@ -36,7 +36,7 @@ constexpr double kBallRadius = 0.025;  // metres
 
 /// How profiles of the ball are made.
 struct Profiles {
-  int samples = 25;
+  int samples = 20;
   double noise = 0.0;  ///< of a point along the scanner's z axis, metres
   double pose_noise =
       0.0;  ///< of a coordinate of the flange, metres; of an angle, twice as many radians
@@ -142,7 +142,7 @@ TEST(CalibrateLineScanner, LeavesOutWhatIsBehindTheBall) {
   const CalibratedRobot calibrated = calibrate_robot(ball_setup(
       profiles_of({.noise = 5e-5, .table = true}), ", loss: {type: tukey, scale: 0.0003}"));
   ASSERT_TRUE(calibrated.is_usable()) << calibrated.judgement.reasons.front();
-  EXPECT_THAT(calibrated.setup.diagnostics.notes, testing::Contains(HasSubstr("of 2250 points, ")));
+  EXPECT_THAT(calibrated.setup.diagnostics.notes, testing::Contains(HasSubstr("of 1800 points, ")));
   for (const int p : calibrated.result.calibrated) {
     const Parameter& found = calibrated.result.table[p];
     EXPECT_NEAR(found.value, truth_of(found.name), 5e-4) << found.name;
