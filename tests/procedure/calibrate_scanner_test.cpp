@@ -36,7 +36,7 @@ constexpr double kBallRadius = 0.025;  // metres
 
 /// How profiles of the ball are made.
 struct Profiles {
-  int samples = 25;
+  int samples = 20;
   double noise = 0.0;  ///< of a point along the scanner's z axis, metres
   double pose_noise =
       0.0;  ///< of a coordinate of the flange, metres; of an angle, twice as many radians
@@ -108,9 +108,11 @@ double truth_of(const std::string& name) {
 }
 
 TEST(CalibrateLineScanner, FindsItsPlaceOnTheFlangeByABallFromNothing) {
-  const CalibratedRobot calibrated = calibrate_robot(ball_setup(profiles_of({})));
-  for (const int p : calibrated.result.calibrated) {
-    const Parameter& found = calibrated.result.table[p];
+  const PreparedCalibration prepared = prepare(ball_setup(profiles_of({})));
+  ASSERT_THAT(prepared.diagnostics.errors, IsEmpty());
+  const CalibrationResult result = calibrate(prepared.calibration);
+  for (const int p : result.calibrated) {
+    const Parameter& found = result.table[p];
     EXPECT_NEAR(found.value, truth_of(found.name), 1e-6) << found.name;
   }
 }
@@ -140,7 +142,7 @@ TEST(CalibrateLineScanner, LeavesOutWhatIsBehindTheBall) {
   const CalibratedRobot calibrated = calibrate_robot(ball_setup(
       profiles_of({.noise = 5e-5, .table = true}), ", loss: {type: tukey, scale: 0.0003}"));
   ASSERT_TRUE(calibrated.is_usable()) << calibrated.judgement.reasons.front();
-  EXPECT_THAT(calibrated.setup.diagnostics.notes, testing::Contains(HasSubstr("of 2250 points, ")));
+  EXPECT_THAT(calibrated.setup.diagnostics.notes, testing::Contains(HasSubstr("of 1800 points, ")));
   for (const int p : calibrated.result.calibrated) {
     const Parameter& found = calibrated.result.table[p];
     EXPECT_NEAR(found.value, truth_of(found.name), 5e-4) << found.name;
@@ -227,24 +229,28 @@ TEST(CalibrateLidar, StandsWhereItsPointsLieOnTheBoardsThatTheCameraSees) {
       "type: "
       "chain3d_to_camera2d, model_3d: board, model_2d: camera}\n- {name: lidar_on_board, type: "
       "point_on_plane, model_a: lidar, model_b: plane}\n";
-  for (const double noise : {0.0, 0.3}) {
+  const auto setup = [&](double noise) {
     Diagnostics found;
-    CalibrationSetup setup{.robot = parse_urdf(kRig, "rig.urdf"),
-                           .config = parse_config(config, "calibrate.yaml", found),
-                           .samples = board_samples(nominal * correction, noise),
-                           .urdf_text = kRig,
-                           .urdf = "rig.urdf"};
-    ASSERT_THAT(found.errors, IsEmpty());
-    const CalibratedRobot calibrated = calibrate_robot(std::move(setup));
-    ASSERT_TRUE(calibrated.result.converged) << calibrated.result.termination;
-    for (const char axis : {'x', 'y', 'z', 'a', 'b', 'c'}) {
-      const int p = calibrated.result.table.index(std::string("lidar_joint_") + axis);
-      const auto deviation = calibrated.deviation(p);
-      ASSERT_TRUE(deviation) << axis;
-      EXPECT_NEAR(calibrated.result.table[p].value, test::of_frame(axis, correction),
-                  noise > 0.0 ? 3.5 * *deviation : 1e-5)
-          << axis;
-    }
+    CalibrationSetup made{.robot = parse_urdf(kRig, "rig.urdf"),
+                          .config = parse_config(config, "calibrate.yaml", found),
+                          .samples = board_samples(nominal * correction, noise),
+                          .urdf_text = kRig,
+                          .urdf = "rig.urdf"};
+    EXPECT_THAT(found.errors, IsEmpty());
+    return made;
+  };
+  const PreparedCalibration prepared = prepare(setup(0.0));
+  ASSERT_THAT(prepared.diagnostics.errors, IsEmpty());
+  const CalibrationResult exact = calibrate(prepared.calibration);
+  const CalibratedRobot noisy = calibrate_robot(setup(0.3));
+  for (const char axis : {'x', 'y', 'z', 'a', 'b', 'c'}) {
+    const std::string name = std::string("lidar_joint_") + axis;
+    const double truth = test::of_frame(axis, correction);
+    EXPECT_NEAR(exact.table[exact.table.index(name)].value, truth, 1e-5) << name;
+    const int p = noisy.result.table.index(name);
+    const auto deviation = noisy.deviation(p);
+    ASSERT_TRUE(deviation) << name;
+    EXPECT_NEAR(noisy.result.table[p].value, truth, 3.5 * *deviation) << name;
   }
 }
 

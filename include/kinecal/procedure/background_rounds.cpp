@@ -29,7 +29,7 @@ namespace detail {
 namespace {
 
 constexpr std::size_t kCloud = 10;                           ///< points of a sample, more than that
-constexpr double kGate = 20.0;                               ///< scales of the loss, at most
+constexpr double kGate = 5.0;                                ///< scales of the loss, at most
 constexpr std::array kWidths = {81.0, 27.0, 9.0, 3.0, 1.0};  ///< times the scale of the loss
 
 [[nodiscard]] bool is_cloud(const BlockConfig& block, std::span<const Sample> samples) {
@@ -133,29 +133,23 @@ void take_away(const BlockConfig& block, const CloudDistances& found,
 /// @param samples  as they were
 void report(const BlockConfig& block, const CloudDistances& found, std::span<const Sample> samples,
             bool is_held, Diagnostics& diagnostics) {
-  constexpr double kFewest = 0.03, kNear = 0.25, kMostOfNear = 0.5;
+  constexpr double kFewest = 0.03, kQuarter = 0.45;  // of normal errors 68 % are within a quarter
   constexpr std::size_t kNamed = 5;
   if (found.all.empty()) return;  // assemble() says so
-  const double widest = widest_gate(block);
-  const double within = found.share(widest), near = found.share(kNear * widest);
-  const auto text = [&](double distance) {
-    return fmt::format(
-        "error block '{}': of {}, {:.1f} % lie within {:.4g} mm of what they are compared with, "
-        "and ",
-        block.name, counted(found.all.size(), "point"), 100.0 * found.share(distance),
-        1e3 * distance);
-  };
-  if (within < kFewest || near < kMostOfNear * within) {
+  const double within = found.share(found.gate), near = found.share(0.25 * found.gate);
+  const std::string text = fmt::format(
+      "error block '{}': of {}, {:.1f} % lie within {:.4g} mm of what they are compared with, and ",
+      block.name, counted(found.all.size(), "point"), 100.0 * within, 1e3 * found.gate);
+  if (within < kFewest || near < kQuarter * within) {
     const std::string why =
-        text(widest) +
-        fmt::format(
-            "{:.1f} % within a quarter of that: hardly more than by chance.  Do the clouds "
-            "show it, in metres, with the joints of their time, and is it what the "
-            "configuration says?",
-            100.0 * near);
+        text + fmt::format(
+                   "{:.1f} % within a quarter of that: hardly more than by chance.  Do the clouds "
+                   "show it, in metres, with the joints of their time, is it what the "
+                   "configuration says, and is the scale of the loss above the noise?",
+                   100.0 * near);
     return is_held ? diagnostics.doubt(block.place, why) : diagnostics.error(block.place, why);
   }
-  diagnostics.note(block.place, text(found.gate) + "those count");
+  diagnostics.note(block.place, text + "those count");
   std::vector<std::string> without;
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const int number = static_cast<int>(s);
@@ -214,6 +208,19 @@ std::vector<double> leave_out_background(const Robot& robot,
                                          const SolveOptions& solving, Diagnostics& diagnostics) {
   constexpr double kLeast = 1e-7;  // metres
   const std::size_t before = diagnostics.errors.size();
+  std::set<std::string> clouds;  // sensors
+  for (const StepConfig& step : config.steps) {
+    for (const BlockConfig& block : step.error_blocks) {
+      if (!detail::is_cloud(block, samples) || clouds.insert(block.models[0]).second) continue;
+      diagnostics.error(
+          block.place,
+          fmt::format("error block '{}': sensor '{}' has a loss in another block, too, and nothing "
+                      "says which points belong to which.  Give what it sees as a link of the URDF "
+                      "(chain3d_to_mesh), or give the points two names of sensors",
+                      block.name, block.models[0]));
+    }
+  }
+  if (diagnostics.errors.size() != before) return {};
   std::vector<double> values;
   if (!held) {
     values = detail::fitted(robot, config, samples, solving);
@@ -229,15 +236,13 @@ std::vector<double> leave_out_background(const Robot& robot,
     if (held && held->contains(parameter.name)) at[p] = held->at(parameter.name);
   }
   const std::vector<Sample> given = samples;
-  std::set<std::string> done;  // sensors
   for (std::size_t s = 0; s < config.steps.size(); ++s) {
     for (BlockConfig& block : config.steps[s].error_blocks) {
       if (!detail::is_cloud(block, given)) continue;
       detail::CloudDistances found =
           detail::distances_of(block, *calibration.steps.at(s).problem, at);
       detail::report(block, found, given, held.has_value(), diagnostics);
-      // A cloud of which several blocks say what it shows is left as it is: places would shift.
-      if (done.insert(block.models[0]).second) detail::take_away(block, found, samples);
+      detail::take_away(block, found, samples);
       keep_loss(block, std::move(found.all), found.gate, kLeast);
     }
   }

@@ -6,7 +6,7 @@
 //
 // 1. Each round is a calibration, the first with a loss of 81 times that scale, then narrower by a factor of three, from where the
 //    round before ended.  So no guess has to say which points belong.
-// 2. What is then beyond four robust standard deviations of the points, at most 20 scales, is of something else: it is left out, and
+// 2. What is then beyond four robust standard deviations of the points, at most five scales, is of something else: it is left out, and
 //    the solve has the others with their loss.
 //
 // The meshes of a robot, a room or a plate are matched by surface_rounds.hpp.

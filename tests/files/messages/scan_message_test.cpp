@@ -30,11 +30,11 @@ TEST(ScanMessage, BeamsWithoutARangeThatCountsAreNoPoints) {
   ASSERT_EQ(view.points.width, 8);
   EXPECT_EQ(view.points.height, 1);
   EXPECT_EQ(view.point_time, 1e-3);
-  const auto at = [](double range, double angle) {
+  const auto at = [](double range, double angle) -> Vector3<float> {
     return Vector3<double>(range * std::cos(angle), range * std::sin(angle), 0.0).cast<float>();
   };
-  EXPECT_EQ(view.points(0, 0), Vector3<float>(at(2.0, 1.0)));
-  EXPECT_EQ(view.points(2, 0), Vector3<float>(at(3.0, 0.0))) << "a scanner that turns clockwise";
+  EXPECT_EQ(view.points(0, 0), at(2.0, 1.0));
+  EXPECT_EQ(view.points(2, 0), at(3.0, 0.0)) << "a scanner that turns clockwise";
   for (const int i : {1, 3, 4, 5, 6, 7}) EXPECT_TRUE(std::isnan(view.points(i, 0).x())) << i;
 }
 
