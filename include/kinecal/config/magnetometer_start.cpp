@@ -146,7 +146,8 @@ void begin_magnetometer(Config& config, std::vector<Sample>& samples, Diagnostic
   const detail::Scatter of(samples);
   if (of.readings.size() < 2) return;
   const auto [bias, field] = detail::linear_start(of);
-  if (!(field > 0.0)) {
+  constexpr double kLeast = 1e-3;  // microtesla
+  if (!(field > kLeast)) {
     diagnostics.error(blocks.front()->place,
                       "the readings of the magnetometer are all the same: did it turn?");
     return;
