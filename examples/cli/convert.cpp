@@ -57,6 +57,9 @@ Content read_bag_content(const std::string& input, Diagnostics& diagnostics) {
   const bool has_samples = std::any_of(topics.begin(), topics.end(), [](const TopicContent& topic) {
     return topic.use == TopicUse::samples && topic.messages > 0;
   });
+  if (!has_samples && gives_sensed_samples(topics)) {
+    return {read_as_recorded(input, diagnostics).samples, {}};
+  }
   const TopicUse used = has_samples ? TopicUse::samples : TopicUse::poses;
   for (const TopicContent& topic : topics) {
     if (topic.use == used || topic.messages == 0) continue;

@@ -93,13 +93,17 @@ void check_gains(const StepConfig& step, const BlockConfig& block, std::size_t m
 
 std::optional<ReadingsPlane> plane_of_readings(std::span<const Sample> samples) {
   constexpr std::size_t kFewest = 4;
-  constexpr double kThin = 0.1;  // of how far they scatter in the plane
+  constexpr double kThin = 0.1;          // of how far they scatter in the plane
+  constexpr double kStraight = 0.99985;  // cosine of a degree
   const detail::Scatter of(samples);
   if (of.readings.size() < kFewest) return std::nullopt;
   const detail::Eigenpairs pairs = detail::eigenpairs(of.square);
   if (!(pairs.values(0) < kThin * kThin * pairs.values(2))) return std::nullopt;
-  return ReadingsPlane{of.mean, Vector3<double>(pairs.vectors.col(0)),
-                       std::sqrt(std::max(0.0, pairs.values(0)))};
+  Vector3<double> normal = pairs.vectors.col(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(normal(axis)) > kStraight) normal = Vector3<double>::Unit(axis);
+  }
+  return ReadingsPlane{of.mean, normal, std::sqrt(std::max(0.0, pairs.values(0)))};
 }
 
 void begin_magnetometer(Config& config, std::vector<Sample>& samples, Diagnostics& diagnostics) {
@@ -142,7 +146,8 @@ void begin_magnetometer(Config& config, std::vector<Sample>& samples, Diagnostic
   const detail::Scatter of(samples);
   if (of.readings.size() < 2) return;
   const auto [bias, field] = detail::linear_start(of);
-  if (!(field > 0.0)) {
+  constexpr double kLeast = 1e-3;  // microtesla
+  if (!(field > kLeast)) {
     diagnostics.error(blocks.front()->place,
                       "the readings of the magnetometer are all the same: did it turn?");
     return;

@@ -3,7 +3,8 @@
 //   |m|^2 = 2 b . m + F^2 - |b|^2       linear in b and in what is left: the start
 //
 // Readings of a base that turns in place are in a plane, but for their noise, which would seem to show the bias along its
-// normal, and the field.  They are put into that plane: neither is determined then, and the result says so.
+// normal, and the field.  They are put into that plane: neither is determined then, and the result says so.  A normal within a
+// degree of an axis of the sensor is that axis, so that the other two components of the bias are determined.
 // Source: Kasa, A circle fitting procedure and its error analysis, 1976.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

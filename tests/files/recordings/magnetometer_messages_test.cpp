@@ -67,6 +67,12 @@ TEST_F(MagnetometerBag, CountsWhatStandsStillOnce) {
   EXPECT_THAT(found_.errors, IsEmpty());
 }
 
+/// However many there are: a sensor that is turned fast is not averaged over its turn.
+TEST_F(MagnetometerBag, DoesNotAverageReadingsThatAreFarApart) {
+  for (int turn = 0; turn < 80; ++turn) write("imu/mag", "sensor_msgs/MagneticField", 10, 1e-6);
+  EXPECT_EQ(read().size(), 800u);
+}
+
 TEST_F(MagnetometerBag, SaysWhichTopicAndWhichUnit) {
   write("gimbal/mag", "geometry_msgs/Vector3Stamped", 40, 0.01);
   write("imu/mag", "geometry_msgs/Vector3Stamped", 40, 0.01);

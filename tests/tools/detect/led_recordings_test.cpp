@@ -54,7 +54,7 @@ class LedRecordings : public test::FolderTest {
     table << "time,code\n" << std::fixed;
     constexpr int kSegment = 300, kWrong = 50, kRight = 190;  // milliseconds
     std::vector<int> codes = {0, 0};
-    for (int cycle = 0; cycle < 2; ++cycle) {
+    for (int cycle = 0; cycle < (topic.empty() ? 0 : 2); ++cycle) {
       for (const Led& led : scene_.finder().leds) codes.insert(codes.end(), {led.code, 0});
     }
     const auto image = [&](int time) {

@@ -50,6 +50,7 @@ struct FieldReading {
 /// Means of readings in succession that are nearer to the first of them than a twentieth of how far all scatter.
 [[nodiscard]] std::vector<FieldReading> thinned(const std::vector<FieldReading>& all) {
   constexpr double kNear = 0.05;        // of the scatter
+  constexpr double kFar = 0.2;          // the same, where there are many readings
   constexpr std::size_t kEnough = 600;  // samples
   Vector3<double> mean = Vector3<double>::Zero();
   for (const FieldReading& one : all) mean += one.field / static_cast<double>(all.size());
@@ -57,13 +58,16 @@ struct FieldReading {
   for (const FieldReading& one : all) {
     scatter += (one.field - mean).squaredNorm() / static_cast<double>(all.size());
   }
-  const double near = kNear * std::sqrt(scatter);
+  const double size = std::sqrt(scatter);
   const std::size_t fewest = 1 + all.size() / kEnough;  // of a mean
   std::vector<FieldReading> means;
   for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
     Vector3<double> sum = Vector3<double>::Zero();
+    const auto is_near = [&](std::size_t other, double share) {
+      return (all[other].field - all[begin].field).norm() < share * size;
+    };
     while (end < all.size() &&
-           (end - begin < fewest || (all[end].field - all[begin].field).norm() < near)) {
+           (end == begin || is_near(end, end - begin < fewest ? kFar : kNear))) {
       sum += all[end++].field;
     }
     means.push_back({all[begin].stamp, sum / static_cast<double>(end - begin)});

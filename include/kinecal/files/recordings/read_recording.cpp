@@ -55,6 +55,7 @@ struct SensedTopics {
     joints = joints || topic.type == "sensor_msgs/JointState";
     imu = imu || topic.type == "sensor_msgs/Imu";
   }
+  [[nodiscard]] bool any() const { return drive || field || (joints && imu); }
 };
 
 /// The samples of a drive and of a magnetometer, or of an accelerometer.
@@ -90,6 +91,18 @@ struct SensedTopics {
 
 }  // namespace
 }  // namespace detail
+
+bool gives_sensed_samples(const std::vector<TopicContent>& topics) {
+  detail::SensedTopics sensed;
+  for (const TopicContent& topic : topics) {
+    if (topic.messages == 0) continue;
+    BagTopic known;
+    known.name = topic.name;
+    known.type = topic.type;
+    sensed.look_at(known);
+  }
+  return sensed.any();
+}
 
 Recording read_recording(const std::string& path, Diagnostics& diagnostics, unsigned threads,
                          const ProgressMeter& meter) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/read_bag.hpp"
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/samples/sample.hpp"
@@ -31,5 +32,10 @@ struct Recording {
 /// Like read_recording(), but the samples have only what is in the file: to be copied.
 [[nodiscard]] Recording read_as_recorded(const std::string& path, Diagnostics& diagnostics,
                                          unsigned threads = 0, const ProgressMeter& meter = {});
+
+/// True if a bag without samples of robot_calibration gives samples all the same: the drive of a base, the readings of a
+/// magnetometer, or of an accelerometer on an arm.
+/// @param topics  all of the bag
+[[nodiscard]] bool gives_sensed_samples(const std::vector<TopicContent>& topics);
 
 }  // namespace kinecal

@@ -35,19 +35,19 @@ namespace {
 
 std::string magnetometer_yaml(const Calibration& calibration, const ParameterTable& table,
                               const std::map<int, double>& deviations) {
-  constexpr double kTesla = 1e-6;  // of a microtesla
+  constexpr double kTesla = 1e6;  // microtesla
   const Term* term = detail::magnetometer_term(calibration);
   if (term == nullptr) return "";
   const auto index = [&](const char* name) { return table.index(term->name + "_" + name); };
   const auto note = [&](int parameter, double unit) -> std::string {
     const auto deviation = deviations.find(parameter);
     if (deviation == deviations.end()) return "";
-    return std::isfinite(deviation->second) ? fmt::format("  # +- {:.2g}", unit * deviation->second)
+    return std::isfinite(deviation->second) ? fmt::format("  # +- {:.2g}", deviation->second / unit)
                                             : "  # not determined";
   };
   std::string text;
   for (const char* name : {"bias_x", "bias_y", "bias_z", "field"}) {
-    text += fmt::format("mag_{}: {}{}\n", name, number_to_yaml(kTesla * table[index(name)].value),
+    text += fmt::format("mag_{}: {}{}\n", name, number_to_yaml(table[index(name)].value / kTesla),
                         note(index(name), kTesla));
   }
   constexpr std::array<const char*, 9> kRows = {"xx", "xy", "xz", "xy", "yy",
