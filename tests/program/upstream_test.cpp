@@ -312,20 +312,21 @@ TEST_F(Upstream, ABagWithoutSamplesIsNamed) {
   EXPECT_FALSE(fs::exists(folder_ / "out/report.json"));
 }
 
-TEST_F(Upstream, ASessionIsCalibrated) {
+TEST_F(Upstream, ASessionThatIsTooShortGivesNoResult) {
   ASSERT_EQ(kinecal("simulate " + source_folder() +
-                    "/examples/mobile_manipulator/mobile_manipulator.urdf --target leds --poses 12 "
+                    "/examples/mobile_manipulator/mobile_manipulator.urdf --target leds --poses 3 "
                     "-o sim")
                 .code,
             0);
   const Outcome session =
       as("calibrate sim/poses.yaml --robot simulated:sim/scene.yaml --urdf sim/robot.urdf --output "
          "out --ros-args --params-file sim/capture.yaml --params-file sim/calibrate.yaml");
-  EXPECT_EQ(session.code, 0) << session.err;
-  EXPECT_THAT(session.out, HasSubstr("pose 12 of 12"));
-  EXPECT_NE(only_file(folder_ / "out", "calibrated_.*[.]urdf"), "");
+  EXPECT_EQ(session.code, 2) << session.err;
+  EXPECT_THAT(session.out, HasSubstr("pose 3 of 3"));
+  EXPECT_THAT(session.err, HasSubstr("+ kinecal calibrate --urdf sim/robot.urdf"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/report.json"));
   const std::string recorded = session.err.substr(session.err.find("/tmp/calibration_data_"));
-  fs::remove(recorded.substr(0, recorded.find('\n')));
+  EXPECT_TRUE(fs::remove(recorded.substr(0, recorded.find('\n'))));
 }
 
 }  // namespace
