@@ -497,6 +497,13 @@ UpstreamCall calibrate_call(Call call, const UpstreamPlace& place) {
   return done;
 }
 
+/// A call that is one line.
+UpstreamCall of_line(const Words& line) {
+  UpstreamCall call;
+  call.lines = {line};
+  return call;
+}
+
 UpstreamCall capture_poses_call(Call call, const UpstreamPlace& place) {
   Words line = {"capture_poses"};
   std::string config = call.option("--config", "");
@@ -509,17 +516,17 @@ UpstreamCall capture_poses_call(Call call, const UpstreamPlace& place) {
       is_ros1(call, place) ? "calibration_poses.bag" : "calibration_poses.yaml";
   add(line, "--output", call.words.empty() ? name : call.words.front());
   if (call.has("--force")) line.emplace_back("--force");
-  return {{line}, {}, {}, false};
+  return of_line(line);
 }
 
 UpstreamCall viz_call(Call call, const UpstreamPlace& place) {
   if (call.words.empty()) refuse(call, "the samples are missing: viz BAG [OFFSETS]");
   if (call.words.size() == 2) {
     const std::filesystem::path folder = std::filesystem::path(call.words[1]).parent_path();
-    return {{{"evaluate", folder.empty() ? "." : folder.string(), call.words[0]}},
-            {"the newest result in the folder of " + call.words[1] + " is evaluated"},
-            {},
-            false};
+    UpstreamCall evaluated =
+        of_line({"evaluate", folder.empty() ? "." : folder.string(), call.words[0]});
+    evaluated.notes = {"the newest result in the folder of " + call.words[1] + " is evaluated"};
+    return evaluated;
   }
   const Configurations files = configurations(call);
   if (files.calibrate.empty()) {
@@ -533,12 +540,10 @@ UpstreamCall viz_call(Call call, const UpstreamPlace& place) {
   line.insert(line.end(), {"--dry-run", "--quiet"});
   add(line, "--report", stem + ".html");
   add(line, "--scene", stem + ".mcap");
-  return {
-      {line},
-      {},
-      "look at " + stem + ".html in a browser, and at " + stem +
-          ".mcap with Foxglove or Lichtblick: the robot and what was measured, before and after",
-      false};
+  UpstreamCall done = of_line(line);
+  done.end = "look at " + stem + ".html in a browser, and at " + stem +
+             ".mcap with Foxglove or Lichtblick: the robot and what was measured, before and after";
+  return done;
 }
 
 UpstreamCall to_rpy_call(const Call& call) {
@@ -546,7 +551,7 @@ UpstreamCall to_rpy_call(const Call& call) {
   Words line = {"rpy"};
   line.insert(line.end(), call.words.begin(), call.words.end());
   line.emplace_back("--comma");
-  return {{line}, {}, {}, false};
+  return of_line(line);
 }
 
 /// A calibration from a recording of topics, with the configuration that `init` writes for it into a folder.
@@ -626,7 +631,7 @@ std::string in_package(const Call& call, const std::string& package, const std::
   }
 }
 
-void append(UpstreamCall& all, UpstreamCall more) {
+void append(UpstreamCall& all, const UpstreamCall& more) {
   all.lines.insert(all.lines.end(), more.lines.begin(), more.lines.end());
   all.notes.insert(all.notes.end(), more.notes.begin(), more.notes.end());
   if (!more.urdf.empty()) all.urdf = more.urdf;
@@ -646,7 +651,7 @@ UpstreamCall calibrate_robot_call(const Call& call, const UpstreamPlace& place) 
   const std::string distro = place.ros_distro.empty() ? "indigo" : place.ros_distro;
   const std::string robot = call.option("--to", "/etc/ros/" + distro);
   const std::string directory = call.option("--directory", kResults);
-  if (call.has("--date")) return {{{"install", "--date", "--to", robot}}, {}, {}, false};
+  if (call.has("--date")) return of_line({"install", "--date", "--to", robot});
   if (call.has("--arm") && call.has("--base") && call.has("--from-bag")) {
     refuse(call, "--from-bag is a recording of the arm or of the base; call it once for each");
   }
@@ -658,15 +663,16 @@ UpstreamCall calibrate_robot_call(const Call& call, const UpstreamPlace& place) 
   }
   // The base first: its result has the URDF of the arm that is not yet calibrated.
   const std::string base = (std::filesystem::path(directory) / "base_calibration").string();
-  const bool has_base = std::filesystem::exists(std::filesystem::path(base) / "report.json");
+  const auto has_result = [](const std::string& folder) {
+    return std::filesystem::exists(std::filesystem::path(folder) / "report.json");
+  };
+  const bool installs_base = call.has("--base") || (call.has("--install") && has_result(base));
+  const bool installs_arm =
+      call.has("--arm") || (call.has("--install") && (has_result(directory) || !installs_base));
   if (call.has("--base")) append(all, base_call(call, base, place));
   if (call.has("--arm")) append(all, arm_call(call, place));
-  if (call.has("--base") || (call.has("--install") && has_base)) {
-    all.lines.push_back({"install", base, "--to", robot});
-  }
-  if (call.has("--arm") || (call.has("--install") && !call.has("--base"))) {
-    all.lines.push_back({"install", directory, "--to", robot});
-  }
+  if (installs_base) all.lines.push_back({"install", base, "--to", robot});
+  if (installs_arm) all.lines.push_back({"install", directory, "--to", robot});
   if (all.lines.empty()) {
     refuse(call, "nothing to do; it takes " + std::string(call.program->usage));
   }
@@ -736,6 +742,7 @@ void add_parameter_server(Words& arguments, const std::string& date) {
     if (word.starts_with("__ns:=")) space = word.substr(word.find('=') + 1);
   }
   if (node.empty()) return;
+  std::replace(node.begin(), node.end(), '/', '_');  // a name has none
   while (space.ends_with('/')) space.pop_back();
   const std::string name =
       (space.starts_with('/') || space.empty() ? space : "/" + space) + "/" + node;
