@@ -5,13 +5,16 @@
 #   lib/kinecal/robot_calibration/bin/calibrate_robot        as Fetch has it
 # Source: REP 122; ament_index_cpp; catkin_find and rosrun of ROS 1.
 
-# A link to the program.
+# A link, by default to the program.
 function(kinecal_install_link name folder component)
-  file(RELATIVE_PATH program /${folder} /${CMAKE_INSTALL_BINDIR}/kinecal)
+  set(target ${ARGN})
+  if(NOT target)
+    file(RELATIVE_PATH target /${folder} /${CMAKE_INSTALL_BINDIR}/kinecal)
+  endif()
   set(link ${PROJECT_BINARY_DIR}/links/${folder}/${name})
   cmake_path(GET link PARENT_PATH links)
   file(MAKE_DIRECTORY ${links})
-  file(CREATE_LINK ${program} ${link} SYMBOLIC)
+  file(CREATE_LINK ${target} ${link} SYMBOLIC)
   install(FILES ${link} DESTINATION ${folder} COMPONENT ${component})
 endfunction()
 
@@ -32,6 +35,7 @@ foreach(name calibrate capture_poses viz to_rpy base_calibration base_calibratio
   kinecal_install_link(${name} ${prefix}lib/robot_calibration robot_calibration)
 endforeach()
 kinecal_install_link(calibrate_robot ${prefix}bin robot_calibration)
+kinecal_install_link(kinecal-robot-calibration ${CMAKE_INSTALL_DATADIR}/doc robot_calibration kinecal)
 kinecal_install_ament_marker(robot_calibration ${prefix} robot_calibration)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/package/robot_calibration/package.xml.in
   ${PROJECT_BINARY_DIR}/package/robot_calibration/package.xml @ONLY)

@@ -29,6 +29,7 @@
 #include "kinecal/text/nearest_name.hpp"
 #include "output_file.hpp"
 #include "question.hpp"
+#include "robot_link.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {
@@ -134,8 +135,8 @@ int capture_base(const CaptureOptions& options) {
     throw InputError("--distance: is not positive");
   }
   check_output(options.output, {options.config, options.urdf}, options.force);
-  const std::string urdf = read_urdf_text(options.urdf);
-  (void)parse_urdf(urdf, options.urdf);
+  const std::string urdf = urdf_of(options.urdf, options.robot);
+  (void)parse_urdf(urdf, urdf_name(options.urdf));
   BagOutput bag(options.output, *encoding);
   write_urdf(bag, urdf);
   const auto write = [&](const std::string& topic, const std::string& type, std::int64_t time,

@@ -35,6 +35,15 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
+/// All joints of a robot that are measured, as one chain.
+CaptureChain all_joints(const Robot& robot) {
+  CaptureChain chain{"all joints", "", {}};
+  for (const Joint& joint : robot.joints()) {
+    if (moves(joint.type) && !joint.mimic) chain.joints.push_back(joint.name);
+  }
+  return chain;
+}
+
 std::vector<std::string> joint_names(const Robot& robot) {
   std::vector<std::string> names;
   for (const Joint& joint : robot.joints()) names.push_back(joint.name);
@@ -206,11 +215,12 @@ int capture_poses(const CapturePosesOptions& options) {
   (void)output_encoding(options.output);
   check_output(options.output, {options.config, options.urdf}, options.force || options.resume);
   Diagnostics diagnostics;
-  CaptureConfig config;  // without a file, all joints
+  CaptureConfig config;
   if (!options.config.empty()) config = read_capture_config(options.config, diagnostics);
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
   const Robot robot = parse_urdf(urdf_of(options.urdf, options.robot), urdf_name(options.urdf));
+  if (options.config.empty()) config.chains = {all_joints(robot)};
   check_chains(options.config, config, robot);
   std::vector<CapturePose> before;
   if (options.resume && std::filesystem::exists(options.output)) {

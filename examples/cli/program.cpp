@@ -816,7 +816,7 @@ void add_capture_poses(CLI::App& command, CapturePosesOptions& options) {
   add_robot(command, options);
   command.get_option("config")->required(false)->description(
       "chains whose joints are recorded and finders: capture.yaml of robot_calibration; default: "
-      "all joints, all finders");
+      "all joints of the URDF, all finders");
   command
       .add_option("-o,--output", options.output,
                   "the poses, written at each Enter: .yaml, .bag (ROS 1) or .mcap")

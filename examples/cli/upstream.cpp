@@ -82,9 +82,9 @@ const std::vector<Program>& programs() {
       {"capture_poses", "[FILE] [--config CAPTURE_YAML]", {{"--config", Follows::a_value}}, {}, 1},
       {"viz", "BAG [OFFSETS]", {}, {"verbose"}, 2},
       {"to_rpy", "A B C", {}, {}, 3},
-      {"base_calibration", "--from-bag BAG", from_bag, of_base, 0},
-      {"base_calibration_node", "--from-bag BAG", from_bag, of_base, 0},
-      {"calibrate_base", "--from-bag BAG", from_bag, of_base, 0},
+      {"base_calibration", "[--from-bag BAG]", from_bag, of_base, 0},
+      {"base_calibration_node", "[--from-bag BAG]", from_bag, of_base, 0},
+      {"calibrate_base", "[--from-bag BAG]", from_bag, of_base, 0},
       {"magnetometer_calibration",
        "[--from-bag BAG]",
        from_bag,
@@ -497,6 +497,13 @@ UpstreamCall calibrate_call(Call call, const UpstreamPlace& place) {
   return done;
 }
 
+/// A call that is one line.
+UpstreamCall of_line(const Words& line) {
+  UpstreamCall call;
+  call.lines = {line};
+  return call;
+}
+
 UpstreamCall capture_poses_call(Call call, const UpstreamPlace& place) {
   Words line = {"capture_poses"};
   std::string config = call.option("--config", "");
@@ -509,17 +516,17 @@ UpstreamCall capture_poses_call(Call call, const UpstreamPlace& place) {
       is_ros1(call, place) ? "calibration_poses.bag" : "calibration_poses.yaml";
   add(line, "--output", call.words.empty() ? name : call.words.front());
   if (call.has("--force")) line.emplace_back("--force");
-  return {{line}, {}, {}, false};
+  return of_line(line);
 }
 
 UpstreamCall viz_call(Call call, const UpstreamPlace& place) {
   if (call.words.empty()) refuse(call, "the samples are missing: viz BAG [OFFSETS]");
   if (call.words.size() == 2) {
     const std::filesystem::path folder = std::filesystem::path(call.words[1]).parent_path();
-    return {{{"evaluate", folder.empty() ? "." : folder.string(), call.words[0]}},
-            {"the newest result in the folder of " + call.words[1] + " is evaluated"},
-            {},
-            false};
+    UpstreamCall evaluated =
+        of_line({"evaluate", folder.empty() ? "." : folder.string(), call.words[0]});
+    evaluated.notes = {"the newest result in the folder of " + call.words[1] + " is evaluated"};
+    return evaluated;
   }
   const Configurations files = configurations(call);
   if (files.calibrate.empty()) {
@@ -533,12 +540,10 @@ UpstreamCall viz_call(Call call, const UpstreamPlace& place) {
   line.insert(line.end(), {"--dry-run", "--quiet"});
   add(line, "--report", stem + ".html");
   add(line, "--scene", stem + ".mcap");
-  return {
-      {line},
-      {},
-      "look at " + stem + ".html in a browser, and at " + stem +
-          ".mcap with Foxglove or Lichtblick: the robot and what was measured, before and after",
-      false};
+  UpstreamCall done = of_line(line);
+  done.end = "look at " + stem + ".html in a browser, and at " + stem +
+             ".mcap with Foxglove or Lichtblick: the robot and what was measured, before and after";
+  return done;
 }
 
 UpstreamCall to_rpy_call(const Call& call) {
@@ -546,32 +551,58 @@ UpstreamCall to_rpy_call(const Call& call) {
   Words line = {"rpy"};
   line.insert(line.end(), call.words.begin(), call.words.end());
   line.emplace_back("--comma");
-  return {{line}, {}, {}, false};
+  return of_line(line);
 }
 
-/// A calibration from a recording of topics, with the configuration that `init` writes for it.
-/// @param target  of `init`
-UpstreamCall recording_call(const Call& call, const std::string& target, const std::string& bag,
-                            const std::string& output, const UpstreamPlace& place) {
-  const std::string config =
-      (std::filesystem::path(output) / (target + "_" + place.date + ".yaml")).string();
-  Words init = {"init", "--target", target};
-  add(init, "--urdf", call.option("--urdf", ""));
-  add(init, "--from", bag);
-  add(init, "--output", config);
-  return {{init, calibration(call, config, bag, output)}, {}, {}, false};
+/// A calibration from a recording of topics, with the configuration that `init` writes for it into a folder.
+/// @param init    of `init`, such as the target
+/// @param urdf    which `init` writes if there is none, in its folder
+UpstreamCall recording_call(const Call& call, const Words& init, const std::string& bag,
+                            const std::string& folder, const std::string& urdf,
+                            const std::string& output) {
+  const std::filesystem::path written(folder);
+  Words line = {"init"};
+  line.insert(line.end(), init.begin(), init.end());
+  add(line, "--urdf", call.option("--urdf", ""));
+  add(line, "--from", bag);
+  add(line, "--output", (written / "calibrate.yaml").string());
+  UpstreamCall done;
+  done.lines = {line, calibration(call, (written / "calibrate.yaml").string(), bag, output)};
+  if (!call.has("--urdf")) done.urdf = (written / urdf).string();
+  return done;
 }
 
+/// Wheels as the odometry reports them, in front of a wall, as upstream has it.
 UpstreamCall base_call(Call call, const std::string& output, const UpstreamPlace& place) {
   (void)configurations(call);
-  const std::string bag = call.option("--from-bag", "");
-  if (bag.empty()) {
-    refuse(call,
-           "a recording is needed, in which the robot turns in place and drives straight in front "
-           "of a wall: 'rosbag record /odom /imu /base_scan /tf /tf_static' (ros2 bag record), "
-           "then --from-bag BAG");
+  const std::string folder = (std::filesystem::path(output) / ("base_" + place.date)).string();
+  Words init = {"--target", "base", "--drive", "odometry", "--seen", "wall"};
+  // What Fetch's driver has; its installer sets both.
+  const bool is_fetch = call.program->name == "calibrate_robot";
+  add(init, "--track-width",
+      call.parameter("base_controller/track_width", is_fetch ? "0.37476" : ""));
+  add(init, "--gyro-scale", call.parameter("imu_gyro_scale", is_fetch ? "0.001221729" : ""));
+  if (call.has("--from-bag")) {
+    return recording_call(call, init, call.option("--from-bag", ""), folder, "base.urdf", output);
   }
-  return recording_call(call, "base", bag, output, place);
+  const std::string bag = output + "/base_calibration_" + place.date + ".bag";
+  const std::string config = (std::filesystem::path(folder) / "drive/base.yaml").string();
+  Words topics = {"init", "--target", "base", "--drive", "odometry", "--seen", "wall"};
+  Words drive = {"capture", config};
+  add(drive, "--robot", call.option("--robot", kBridge));
+  for (Words* line : {&topics, &drive}) add(*line, "--urdf", call.option("--urdf", ""));
+  add(topics, "--output", config);
+  const std::array<std::array<const char*, 2>, 4> names = {
+      {{"odom", "odom"}, {"base_scan", "scan"}, {"imu", "imu"}, {"cmd_vel", "commands"}}};
+  for (const auto& [topic, key] : names) {
+    const std::string name = topic_of(call, topic);
+    if (!name.empty()) add(drive, "--topic", std::string(key) + "=" + name);
+  }
+  drive.emplace_back("--drive");
+  add(drive, "--output", bag);
+  UpstreamCall done = recording_call(call, init, bag, folder, "base.urdf", output);
+  done.lines.insert(done.lines.begin(), {topics, drive});
+  return done;
 }
 
 UpstreamCall magnetometer_call(Call call, const UpstreamPlace& place) {
@@ -580,7 +611,10 @@ UpstreamCall magnetometer_call(Call call, const UpstreamPlace& place) {
                      call.parameter("rotation_duration", "60.0") != "0.0";
   std::string bag = call.option("--from-bag", "");
   if (bag.empty()) bag = call.parameter("bag_file_name", "/tmp/magnetometer_calibration.bag");
-  UpstreamCall done = recording_call(call, "magnetometer", bag, call.output(), place);
+  const std::string folder =
+      (std::filesystem::path(call.output()) / ("magnetometer_" + place.date)).string();
+  UpstreamCall done = recording_call(call, {"--target", "magnetometer"}, bag, folder,
+                                     "magnetometer.urdf", call.output());
   if (!call.has("--from-bag") && (turns || call.is_set("rotation_manual"))) {
     done.notes.push_back("the robot is not turned: " + bag +
                          " is read, a recording of /imu/mag while somebody turns it");
@@ -597,9 +631,10 @@ std::string in_package(const Call& call, const std::string& package, const std::
   }
 }
 
-void append(UpstreamCall& all, UpstreamCall more) {
+void append(UpstreamCall& all, const UpstreamCall& more) {
   all.lines.insert(all.lines.end(), more.lines.begin(), more.lines.end());
   all.notes.insert(all.notes.end(), more.notes.begin(), more.notes.end());
+  if (!more.urdf.empty()) all.urdf = more.urdf;
 }
 
 /// Captures and calibrates arm and head of a Fetch.
@@ -616,7 +651,7 @@ UpstreamCall calibrate_robot_call(const Call& call, const UpstreamPlace& place) 
   const std::string distro = place.ros_distro.empty() ? "indigo" : place.ros_distro;
   const std::string robot = call.option("--to", "/etc/ros/" + distro);
   const std::string directory = call.option("--directory", kResults);
-  if (call.has("--date")) return {{{"install", "--date", "--to", robot}}, {}, {}, false};
+  if (call.has("--date")) return of_line({"install", "--date", "--to", robot});
   if (call.has("--arm") && call.has("--base") && call.has("--from-bag")) {
     refuse(call, "--from-bag is a recording of the arm or of the base; call it once for each");
   }
@@ -628,15 +663,16 @@ UpstreamCall calibrate_robot_call(const Call& call, const UpstreamPlace& place) 
   }
   // The base first: its result has the URDF of the arm that is not yet calibrated.
   const std::string base = (std::filesystem::path(directory) / "base_calibration").string();
-  const bool has_base = std::filesystem::exists(std::filesystem::path(base) / "report.json");
+  const auto has_result = [](const std::string& folder) {
+    return std::filesystem::exists(std::filesystem::path(folder) / "report.json");
+  };
+  const bool installs_base = call.has("--base") || (call.has("--install") && has_result(base));
+  const bool installs_arm =
+      call.has("--arm") || (call.has("--install") && (has_result(directory) || !installs_base));
   if (call.has("--base")) append(all, base_call(call, base, place));
   if (call.has("--arm")) append(all, arm_call(call, place));
-  if (call.has("--base") || (call.has("--install") && has_base)) {
-    all.lines.push_back({"install", base, "--to", robot});
-  }
-  if (call.has("--arm") || (call.has("--install") && !call.has("--base"))) {
-    all.lines.push_back({"install", directory, "--to", robot});
-  }
+  if (installs_base) all.lines.push_back({"install", base, "--to", robot});
+  if (installs_arm) all.lines.push_back({"install", directory, "--to", robot});
   if (all.lines.empty()) {
     refuse(call, "nothing to do; it takes " + std::string(call.program->usage));
   }
@@ -706,6 +742,7 @@ void add_parameter_server(Words& arguments, const std::string& date) {
     if (word.starts_with("__ns:=")) space = word.substr(word.find('=') + 1);
   }
   if (node.empty()) return;
+  std::replace(node.begin(), node.end(), '/', '_');  // a name has none
   while (space.ends_with('/')) space.pop_back();
   const std::string name =
       (space.starts_with('/') || space.empty() ? space : "/" + space) + "/" + node;
@@ -716,6 +753,13 @@ void add_parameter_server(Words& arguments, const std::string& date) {
                      "' are not known; give their files with --launch or --ros-args --params-file");
   }
   arguments.insert(arguments.end(), {"--ros-args", "--params-file", file, "--"});
+}
+
+/// True for the calibration beside whose configuration `init` has written this URDF.
+bool is_of(const std::filesystem::path& urdf, const Words& line) {
+  const auto config = std::find(line.begin(), line.end(), "--config");
+  return line.front() == "calibrate" && config != line.end() && std::filesystem::exists(urdf) &&
+         std::filesystem::path(*(config + 1)).parent_path() == urdf.parent_path();
 }
 
 int run_line(const Words& line) {
@@ -755,7 +799,8 @@ int run_as_upstream(const std::string& name, std::vector<std::string> arguments)
     return kBadInput;
   }
   for (const std::string& note : call.notes) say(stderr, "note: {}\n", note);
-  for (const Words& line : call.lines) {
+  for (Words& line : call.lines) {
+    if (is_of(call.urdf, line)) add(line, "--urdf", call.urdf);
     if (call.is_shown) {
       say("{}\n", typed(line));
       continue;

