@@ -83,10 +83,10 @@ TEST_P(RosRobotTest, HasItsUrdfAsATopicOrAParameter) {
     return robot_description(options);
   };
   constexpr milliseconds kLong(30000), kShort(300);
-  start(R"(, "urdf": "<robot name='topic'/>", "capabilities": ["parameters"])");
-  EXPECT_EQ(urdf(kLong), "<robot name='topic'/>");
-  start(R"(, "urdf_parameter": "<robot name='parameter'/>", "capabilities": ["parameters"])");
-  EXPECT_EQ(urdf(kLong), "<robot name='parameter'/>");
+  start(R"(, "urdf": "<topic/>", "capabilities": ["parameters"])");
+  EXPECT_EQ(urdf(kLong), "<topic/>");
+  start(R"(, "urdf_parameter": "<parameter/>", "capabilities": ["parameters"])");
+  EXPECT_EQ(urdf(kLong), "<parameter/>");
   start();
   EXPECT_THAT(error_of([&] { (void)urdf(kShort); }),
               HasSubstr("it has no URDF: no parameter '/robot_description', and the bridge offers "
