@@ -318,14 +318,14 @@ std::string base_columns(std::string_view text, const std::string& file) {
   const RecordedBase has =
       recorded([&](const std::string& name) { return columns.count(name) > 0; });
   if ((has.drives.empty() && !has.has_gyro) || has.seen.empty()) {
-    throw InputError(
-        fmt::format("{}: no columns of {}; name them as the conditions of MANUAL.md, \"A mobile "
-                    "base\", such as "
-                    "{}; the table has {}",
-                    file, has.seen.empty() ? "what shows how the base moved" : "a drive",
-                    has.seen.empty() ? "track_x, track_y, track_yaw or wall_angle, wall_distance"
-                                     : "left_wheel, right_wheel or odom_x, odom_y, odom_yaw",
-                    table.header ? table.header_text : "no header"));
+    throw InputError(fmt::format(
+        "{}: no columns of {}; name them as the conditions of MANUAL.md, \"A mobile "
+        "base\", such as "
+        "{} (of a table whose rows are intervals, under increments: in a columns.yaml); {}",
+        file, has.seen.empty() ? "what shows how the base moved" : "a drive",
+        has.seen.empty() ? "track_x, track_y, track_yaw or wall_angle, wall_distance"
+                         : "left_wheel, right_wheel or odom_x, odom_y, odom_yaw",
+        table.header ? table.header_text : "it has no header"));
   }
   std::string conditions;
   for (const auto& [condition, column] : columns) {

@@ -81,8 +81,29 @@ struct GradientSums {
   }
 };
 
+/// S of few groups: widened for each parameter so that two standard deviations are the 95 % of Student's distribution, with one
+/// degree of freedom less than groups that show the parameter.  Its quantile by Abramowitz, Stegun 26.7.5.
+/// Source: Satterthwaite 1946; Bell, McCaffrey, Bias reduction in standard errors for linear regression with multi-stage
+/// samples, 2002.
+[[nodiscard]] Eigen::MatrixXd widened(const GradientSums& sums, const Eigen::MatrixXd& scatter) {
+  constexpr double kZ = 1.96, kFirst = (kZ * kZ + 1.0) / 4.0,
+                   kSecond = (5.0 * kZ * kZ * kZ * kZ + 16.0 * kZ * kZ + 3.0) / 96.0, kLeast = 2.0;
+  const Eigen::MatrixXd& of = sums.influence;
+  Eigen::VectorXd factor = Eigen::VectorXd::Ones(of.rows());
+  for (Eigen::Index p = 0; p < of.rows(); ++p) {
+    if (!(sums.squares(p) > 0.0)) continue;
+    const double freedom = std::max(kLeast, sums.sum(p) * sums.sum(p) / sums.squares(p) - 1.0);
+    factor(p) = 1.0 + (kFirst + kSecond / freedom) / freedom;
+  }
+  const Eigen::MatrixXd back =
+      Spectrum(of.transpose() * of).pseudo_inverse() * of.transpose() * factor.asDiagonal() * of;
+  return back * scatter * back.transpose();
+}
+
 /// S, shrunk towards a target as far as the scatter of the variances of the parameters demands.
-[[nodiscard]] Eigen::MatrixXd shrunk(const GradientSums& sums, const Eigen::MatrixXd& target) {
+/// @param are_few  groups: S is widened
+[[nodiscard]] Eigen::MatrixXd shrunk(const GradientSums& sums, const Eigen::MatrixXd& target,
+                                     bool are_few) {
   const Eigen::MatrixXd scatter = sums.scatter(), &of = sums.influence;
   const auto variances = [&](const Eigen::MatrixXd& matrix) {
     return Eigen::ArrayXd((of * matrix).cwiseProduct(of).rowwise().sum().array());
@@ -97,7 +118,7 @@ struct GradientSums {
   }
   if (!(apart > chance)) return target;
   const double weight = chance / apart;  // of the target
-  return weight * target + (1.0 - weight) * scatter;
+  return weight * target + (1.0 - weight) * (are_few ? widened(sums, scatter) : scatter);
 }
 
 /// Rows of a block, feature after feature.
@@ -153,11 +174,11 @@ struct WhitenedFit {
 };
 
 /// @param independent  without the share of priors
-/// @param may_cancel   errors of a group may cancel each other: those of motions between poses that are tracked do
+/// @param are_runs     groups are few, and their errors may cancel each other: those of motions between tracked poses do
 [[nodiscard]] std::optional<GradientVariance> variance_of(const WhitenedFit& of,
                                                           const RowGroups& groups,
                                                           const Eigen::MatrixXd& independent,
-                                                          bool may_cancel) {
+                                                          bool are_runs) {
   const LinearFit& fit = of.fit;
   GradientSums sums(fit.coordinates.basis * of.whitening);
   double directions = 0.0;
@@ -181,9 +202,10 @@ struct WhitenedFit {
   double effect = of_groups / of_features;
   const double chance = std::sqrt(sums.chance) / directions;
   const bool is_more = effect > 1.0 + 3.0 * chance, is_less = effect < 1.0 / (1.0 + 3.0 * chance);
-  if (!is_more && !(may_cancel && is_less)) effect = 1.0;
+  if (!is_more && !(are_runs && is_less)) effect = 1.0;
   const Eigen::MatrixXd of_rows = of.whitening.transpose() * independent * of.whitening;
-  return GradientVariance{of.back * shrunk(sums, effect * of_rows) * of.back.transpose(), effect};
+  return GradientVariance{of.back * shrunk(sums, effect * of_rows, are_runs) * of.back.transpose(),
+                          effect};
 }
 
 }  // namespace
