@@ -113,7 +113,7 @@ void write_drive(const std::string& path, const SimulatedBase& base, const BagOp
   bag.finish();
 }
 
-class BaseDrive : public testing::Test {
+class BaseDriveFromBag : public testing::Test {
  protected:
   std::vector<Sample> read(const BagOptions& of) {
     const std::string path = (folder_.path() / "drive.bag").string();
@@ -131,7 +131,7 @@ class BaseDrive : public testing::Test {
   Diagnostics found_;
 };
 
-TEST_F(BaseDrive, ScansShowTheWallAndRunsAreNumbered) {
+TEST_F(BaseDriveFromBag, ScansShowTheWallAndRunsAreNumbered) {
   const std::vector<Sample> samples = read({});
   EXPECT_THAT(found_.errors, IsEmpty());
   EXPECT_THAT(found_.doubts, IsEmpty());
@@ -154,7 +154,7 @@ TEST_F(BaseDrive, ScansShowTheWallAndRunsAreNumbered) {
   EXPECT_THAT(found_.notes.front(), HasSubstr("scans show no wall; the first: "));
 }
 
-TEST_F(BaseDrive, ATrackedPoseNeedsNoScans) {
+TEST_F(BaseDriveFromBag, ATrackedPoseNeedsNoScans) {
   const std::vector<Sample> samples = read({.has_scans = false, .has_tracked = true});
   EXPECT_THAT(found_.errors, IsEmpty());
   ASSERT_GT(samples.size(), 50u);
@@ -162,7 +162,7 @@ TEST_F(BaseDrive, ATrackedPoseNeedsNoScans) {
   EXPECT_FALSE(samples[10].conditions.contains("wall_angle"));
 }
 
-TEST_F(BaseDrive, FourWheelsAreAlsoTwo) {
+TEST_F(BaseDriveFromBag, FourWheelsAreAlsoTwo) {
   const std::vector<Sample> samples =
       read({.has_odometry = false,
             .wheels = {"front_left_wheel", "front_right_wheel", "rear_left_wheel",
@@ -178,7 +178,7 @@ TEST_F(BaseDrive, FourWheelsAreAlsoTwo) {
   EXPECT_EQ(drive.base_frame, "");  // it is that of the odometry
 }
 
-TEST_F(BaseDrive, WhatIsMissingIsSaid) {
+TEST_F(BaseDriveFromBag, WhatIsMissingIsSaid) {
   EXPECT_THAT(read({.has_scans = false}), IsEmpty());
   ASSERT_EQ(found_.errors.size(), 1u);
   EXPECT_THAT(found_.errors[0], HasSubstr("no messages of robot_calibration_msgs"));
@@ -188,14 +188,14 @@ TEST_F(BaseDrive, WhatIsMissingIsSaid) {
   EXPECT_THAT(found_.errors[0], HasSubstr("takes scans of a wall"));
 }
 
-TEST_F(BaseDrive, AGyroscopeAloneIsEnough) {
+TEST_F(BaseDriveFromBag, AGyroscopeAloneIsEnough) {
   const std::vector<Sample> samples = read({.has_odometry = false});
   EXPECT_THAT(found_.errors, IsEmpty());
   ASSERT_GT(samples.size(), 30u);
   EXPECT_EQ(samples.back().conditions.at(kRun), 6.0);  // it does not see straight runs
 }
 
-TEST_F(BaseDrive, AGyroscopeThatTurnsTheOtherWayAndClocksThatDifferAreDoubts) {
+TEST_F(BaseDriveFromBag, AGyroscopeThatTurnsTheOtherWayAndClocksThatDifferAreDoubts) {
   (void)read({.gyro_sign = -1.0});
   ASSERT_EQ(found_.doubts.size(), 1u);
   EXPECT_THAT(found_.doubts[0], HasSubstr("its z axis points down?"));
