@@ -41,7 +41,7 @@ std::string magnetometer_yaml(const Calibration& calibration, const ParameterTab
   const auto index = [&](const char* name) { return table.index(term->name + "_" + name); };
   const auto note = [&](int parameter, double unit) -> std::string {
     const auto deviation = deviations.find(parameter);
-    if (deviation == deviations.end()) return "";
+    if (deviation == deviations.end()) return "  # held";
     return std::isfinite(deviation->second) ? fmt::format("  # +- {:.2g}", deviation->second / unit)
                                             : "  # not determined";
   };

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -40,24 +41,36 @@ std::string magnetometer_config(const std::string& base_link, std::span<const Sa
                      : fmt::format("{} samples", count),
         kFewest));
   }
-  const bool is_turn = plane_of_readings(samples).has_value();
+  const std::optional<ReadingsPlane> plane = plane_of_readings(samples);
+  Eigen::Index about = 2;  // the axis that it turned about
+  const bool is_along = plane && plane->normal.cwiseAbs().maxCoeff(&about) == 1.0;
+  std::string hard;
+  for (const Eigen::Index axis : {0, 1, 2}) {
+    hard +=
+        is_along && axis == about
+            ? fmt::format(
+                  " # mag_bias_{} is held: the bias along the axis of the turn does not show.\n",
+                  "xyz"[axis])
+            : fmt::format(" - mag_bias_{}\n", "xyz"[axis]);
+  }
+  constexpr std::array<const char*, 3> kInPlane = {
+      " - mag_yy\n - mag_yz\n", " - mag_xx\n - mag_xz\n", " - mag_xx\n - mag_xy\n"};
   const std::string soft =
-      is_turn
-          ? " # Soft iron, as far as a turn about one axis shows it: which way the circle is "
-            "longer.\n - mag_xx\n - mag_xy\n"
-          : " # Soft iron.  The size of all of it goes with the strength of the field: mag_zz is "
-            "held.\n - mag_xx\n - mag_yy\n - mag_xy\n - mag_xz\n - mag_yz\n";
+      plane ? " # Soft iron, as far as a turn about one axis shows it: which way the circle is "
+              "longer.\n" +
+                  std::string(kInPlane[static_cast<std::size_t>(about)])
+            : " # Soft iron.  The size of all of it goes with the strength of the field: mag_zz is "
+              "held.\n - mag_xx\n - mag_yy\n - mag_xy\n - mag_xz\n - mag_yz\n";
   return fmt::format(
       "# A magnetometer{}.\nbase_link: {}\nmodels: []\nfree_params:\n"
-      " # Hard iron: what is magnetic and turns with it, microtesla.\n"
-      " - mag_bias_x\n - mag_bias_y\n - mag_bias_z\n"
+      " # Hard iron: what is magnetic and turns with it, microtesla.\n{}"
       " # The strength of the field{}.\n - mag_field\n{}"
       "error_blocks:\n # The strength that it reads is the same all ways; residuals are in "
       "microtesla.\n - name: mag\n   type: magnetic_field\n   loss: {{type: huber, scale: 3.0}}\n",
-      is_turn ? " that turned about one axis, as on a base that turns in place"
-              : " that turned about several axes",
-      detail::name_to_yaml(base_link),
-      is_turn ? " in the plane of the turn" : ", microtesla: of the earth, 22 to 67", soft);
+      plane ? " that turned about one axis, as on a base that turns in place"
+            : " that turned about several axes",
+      detail::name_to_yaml(base_link), hard,
+      plane ? " in the plane of the turn" : ", microtesla: of the earth, 22 to 67", soft);
 }
 
 std::string magnetometer_columns(std::string_view text, const std::string& file) {
