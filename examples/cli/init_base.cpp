@@ -104,13 +104,15 @@ BaseInput read(const InitOptions& options) {
 /// One of some words: given, asked for, or the first.
 std::string one_of(const std::string& given, const char* option, const std::string& asks,
                    const std::vector<std::string>& words) {
-  return ask_unless_given(given, {option, asks, choices(words)},
-                          [&](const std::string& word) -> std::string {
-                            if (std::find(words.begin(), words.end(), word) != words.end())
-                              return "";
-                            return fmt::format("'{}' is not one of {}{}", word,
-                                               fmt::join(words, ", "), did_you_mean(word, words));
-                          });
+  const auto why_not = [&](const std::string& word) -> std::string {
+    if (std::find(words.begin(), words.end(), word) != words.end()) return "";
+    return fmt::format("'{}' is not one of {}{}", word, fmt::join(words, ", "),
+                       did_you_mean(word, words));
+  };
+  if (const std::string wrong = given.empty() ? "" : why_not(given); !wrong.empty()) {
+    throw InputError(fmt::format("{}: {}", option, wrong));
+  }
+  return ask_unless_given(given, {option, asks, choices(words)}, why_not);
 }
 
 /// A number that is needed: given, of the URDF, or asked for.
