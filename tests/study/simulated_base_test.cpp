@@ -131,7 +131,7 @@ TEST(BaseCoverage, IntervalsOfWheelsCoverTheTruth) {
   expect_coverage<DifferentialToPose>(
       "wheels, tracked pose", {"track_width_scale", "left_rollout_scale", "right_rollout_scale"},
       {{"track_width_scale", 1.02}, {"left_rollout_scale", 0.98}, {"right_rollout_scale", 0.98}},
-      0.0);
+      0.0, true);
 }
 TEST(BaseCoverage, IntervalsByTheWallCoverTheTruth) {
   expect_coverage<OdometryToWall>("odometry, wall", {"track_width_scale", "rollout_scale"},

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinecal/files/messages/make.hpp"
@@ -33,7 +34,7 @@ struct BagOptions {
   double late_imu = 0.0;  ///< stamps of the IMU behind those of the odometry, seconds
 };
 
-MessageFields header(double time, const std::string& frame) {
+MessageFields header(double time, std::string_view frame) {
   return fields("stamp", detail::time_fields(Stamp(std::llround(1e9 * (1000.0 + time)))),
                 "frame_id", frame);
 }
