@@ -10,6 +10,7 @@
 #include "kinecal/tools/detect/joint_motion.hpp"
 #include "kinecal/tools/detect/joint_track.hpp"
 #include "kinecal/tools/detect/joint_tracks.hpp"
+#include "kinecal/tools/detect/led_commands.hpp"
 #include "kinecal/tools/detect/look.hpp"
 #include "kinecal/tools/detect/recorded_views.hpp"
 #include "kinecal/tools/detect/rig_views.hpp"

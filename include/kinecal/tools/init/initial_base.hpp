@@ -50,6 +50,7 @@ struct RecordedBase {
   bool has_gyro = false;
   bool turns = true, runs = true;
 };
+/// What these samples have.
 [[nodiscard]] RecordedBase recorded_base(std::span<const Sample> samples);
 
 /// The link of a base: the first of some names that is a link, else base_link, else the root.
