@@ -5,13 +5,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 
 #include "kinecal/errors/magnetic_field.hpp"
-#include "kinecal/geometry/eigenpairs.hpp"
 
 namespace kinecal {
 
@@ -35,7 +35,7 @@ constexpr std::array<const char*, 3> kReading = {"mag_x", "mag_y", "mag_z"};
 struct Scatter {
   std::vector<Vector3<double>> readings;
   Vector3<double> mean = Vector3<double>::Zero();
-  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(3, 3);  ///< mean of (m - mean)(m - mean)^T
+  Eigen::Matrix3d square = Eigen::Matrix3d::Zero();  ///< mean of (m - mean)(m - mean)^T
 
   explicit Scatter(std::span<const Sample> samples) {
     for (const Sample& sample : samples) {
@@ -56,12 +56,12 @@ struct Scatter {
     right += 0.5 * share * ((one - of.mean).squaredNorm() - squares) * (one - of.mean);
   }
   constexpr double kShown = 1e-6;  // of the largest
-  const Eigenpairs pairs = eigenpairs(of.square);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> pairs(of.square);
   Vector3<double> bias = Vector3<double>::Zero();
   for (Eigen::Index i = 0; i < 3; ++i) {
-    if (!(pairs.values(i) > kShown * pairs.values(2))) continue;
-    const Eigen::Vector3d axis = pairs.vectors.col(i);
-    bias += axis.dot(right) / pairs.values(i) * axis;
+    if (!(pairs.eigenvalues()(i) > kShown * pairs.eigenvalues()(2))) continue;
+    const Eigen::Vector3d axis = pairs.eigenvectors().col(i);
+    bias += axis.dot(right) / pairs.eigenvalues()(i) * axis;
   }
   return {of.mean + bias, std::sqrt(squares + bias.squaredNorm())};
 }
@@ -97,13 +97,13 @@ std::optional<ReadingsPlane> plane_of_readings(std::span<const Sample> samples) 
   constexpr double kStraight = 0.99985;  // cosine of a degree
   const detail::Scatter of(samples);
   if (of.readings.size() < kFewest) return std::nullopt;
-  const detail::Eigenpairs pairs = detail::eigenpairs(of.square);
-  if (!(pairs.values(0) < kThin * kThin * pairs.values(2))) return std::nullopt;
-  Vector3<double> normal = pairs.vectors.col(0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> pairs(of.square);
+  if (!(pairs.eigenvalues()(0) < kThin * kThin * pairs.eigenvalues()(2))) return std::nullopt;
+  Vector3<double> normal = pairs.eigenvectors().col(0);
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(normal(axis)) > kStraight) normal = Vector3<double>::Unit(axis);
   }
-  return ReadingsPlane{of.mean, normal, std::sqrt(std::max(0.0, pairs.values(0)))};
+  return ReadingsPlane{of.mean, normal, std::sqrt(std::max(0.0, pairs.eigenvalues()(0)))};
 }
 
 void begin_magnetometer(Config& config, std::vector<Sample>& samples, Diagnostics& diagnostics) {
