@@ -145,7 +145,7 @@ TEST(CalibrateMagnetometer, TheFileHasUpstreamsKeys) {
   const std::string text =
       magnetometer_yaml(found.setup.calibration, table, {{x, 0.25}, {z, INFINITY}});
   EXPECT_THAT(text, HasSubstr("mag_bias_x: 1.25e-05  # +- 2.5e-07\n"));
-  EXPECT_THAT(text, HasSubstr("mag_bias_y: -8e-06  # held\n"));
+  EXPECT_THAT(text, HasSubstr("mag_bias_y: -8.0e-06  # held\n"));
   EXPECT_THAT(text, HasSubstr("mag_bias_z: 2.5e-07  # not determined\n"));
   EXPECT_THAT(text, HasSubstr("mag_soft_iron: [1.5, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]"));
 }
