@@ -32,7 +32,7 @@ class MagnetometerBag : public testing::Test {
                                            unit * 20.0 * std::sin(angle), "z", unit * -40.0);
       const std::int64_t time = 1'000'000'000 * (1000 + std::int64_t{i});
       const MessageFields header =
-          fields("stamp", detail::time_fields(Stamp(time)), "frame_id", std::string("imu_link"));
+          fields("stamp", detail::time_fields(Stamp(time)), "frame_id", "imu_link");
       bag_.write({topic, type}, time,
                  type == "sensor_msgs/MagneticField"
                      ? fields("header", header, "magnetic_field", reading)
