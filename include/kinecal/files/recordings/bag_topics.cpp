@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/files/recordings/bag_topics.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <map>
 #include <string>
 #include <string_view>
@@ -54,6 +57,22 @@ std::vector<TopicContent> bag_topics(const std::string& path, Diagnostics& diagn
   std::vector<TopicContent> all;
   for (auto& [key, topic] : topics) all.push_back(std::move(topic));
   return all;
+}
+
+std::string chosen_topic(std::vector<std::string> names, const std::vector<std::string>& usual,
+                         const std::string& of, const std::string& path, Diagnostics& diagnostics) {
+  if (names.empty()) return "";
+  std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+    const auto rank = [&](const std::string& name) {
+      return std::find(usual.begin(), usual.end(), name) - usual.begin();
+    };
+    return rank(a) < rank(b);
+  });
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    diagnostics.note({path, 0}, fmt::format("of the topics of {}, '{}' is used, not '{}'", of,
+                                            names.front(), names[i]));
+  }
+  return names.front();
 }
 
 }  // namespace kinecal

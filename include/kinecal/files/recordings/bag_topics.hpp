@@ -35,4 +35,11 @@ struct TopicContent {
 [[nodiscard]] std::vector<TopicContent> bag_topics(const std::string& path,
                                                    Diagnostics& diagnostics);
 
+/// Of topics that could serve, the one with the first of some usual names, else the first; the others are noted.
+/// @param of  what they are, for notes: "sensor_msgs/Imu"
+/// @returns   empty: there are none
+[[nodiscard]] std::string chosen_topic(std::vector<std::string> names,
+                                       const std::vector<std::string>& usual, const std::string& of,
+                                       const std::string& path, Diagnostics& diagnostics);
+
 }  // namespace kinecal

@@ -136,20 +136,12 @@ class BaseMessages {
         {"sensor_msgs/JointState", {"joint_states"}},
         {"geometry_msgs/PoseStamped", {}},
         {"geometry_msgs/PoseWithCovarianceStamped", {}}};
+    std::map<std::string, std::vector<std::string>> names;  // by type
     for (const TopicContent& topic : bag_topics(path_, diagnostics_)) {
-      const auto known = usual.find(topic.type);
-      if (known == usual.end() || topic.messages == 0) continue;
-      const auto [chosen, is_first] = topics_.try_emplace(topic.type, topic.name);
-      const auto& names = known->second;
-      const auto rank = [&](const std::string& name) {
-        return std::find(names.begin(), names.end(), name) - names.begin();
-      };
-      if (is_first) continue;
-      const std::string other = rank(topic.name) < rank(chosen->second)
-                                    ? std::exchange(chosen->second, topic.name)
-                                    : topic.name;
-      diagnostics_.note({path_, 0}, fmt::format("of the topics of {}, '{}' is used, not '{}'",
-                                                topic.type, chosen->second, other));
+      if (usual.contains(topic.type) && topic.messages > 0) names[topic.type].push_back(topic.name);
+    }
+    for (auto& [type, of_type] : names) {
+      topics_[type] = chosen_topic(std::move(of_type), usual.at(type), type, path_, diagnostics_);
     }
   }
 

@@ -20,8 +20,6 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-constexpr const char* kUpstreamsTopic = "imu/mag";
-
 struct FieldReading {
   Stamp stamp = {};
   Vector3<double> field = Vector3<double>::Zero();  ///< millionths of the topic's unit
@@ -36,15 +34,7 @@ struct FieldReading {
     known.type = topic.type;
     if (shows_magnetic_field(known) && topic.messages > 0) names.push_back(topic.name);
   }
-  if (names.empty()) return "";
-  const auto usual = std::find(names.begin(), names.end(), kUpstreamsTopic);
-  if (usual != names.end()) std::iter_swap(names.begin(), usual);
-  for (std::size_t i = 1; i < names.size(); ++i) {
-    diagnostics.note({path, 0},
-                     fmt::format("of the topics of magnetometers, '{}' is used, not '{}'",
-                                 names.front(), names[i]));
-  }
-  return names.front();
+  return chosen_topic(std::move(names), {"imu/mag"}, "magnetometers", path, diagnostics);
 }
 
 /// Means of readings in succession that are nearer to the first of them than a twentieth of how far all scatter.
