@@ -12,11 +12,11 @@
 
 #include "input.hpp"
 #include "kinecal/config/assemble.hpp"
+#include "kinecal/config/complete_samples.hpp"
 #include "kinecal/config/doubts/joint_positions.hpp"
 #include "kinecal/config/doubts/repeated_samples.hpp"
 #include "kinecal/config/doubts/sensor_points.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
-#include "kinecal/config/place_planes.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/files/cameras/camera_info.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
@@ -285,7 +285,7 @@ NewSamples hold_against(const StoredResult& result, std::vector<Sample> samples,
   if (!fresh.diagnostics.errors.empty()) return fresh;
   Config config = result.config;
   const bool is_of_surface = compares_surface(config);
-  place_planes(config, fresh.samples);
+  complete_samples(config, fresh.samples);
   if (is_of_surface) associate_new(result, options, config, fresh);
   if (has_background(config, fresh.samples)) {
     (void)leave_out_background(result.robot, result.values, config, fresh.samples, {},

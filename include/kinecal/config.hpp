@@ -15,6 +15,7 @@
 #include "kinecal/config/capture/capture_config.hpp"
 #include "kinecal/config/choose_images.hpp"
 #include "kinecal/config/choose_lenses.hpp"
+#include "kinecal/config/complete_samples.hpp"
 #include "kinecal/config/config.hpp"
 #include "kinecal/config/config_to_yaml.hpp"
 #include "kinecal/config/configured_sensor.hpp"

@@ -136,6 +136,19 @@ TEST(CalibrateLog, RefusesWhatCalibrateRefusesInTheSameWords) {
   EXPECT_EQ(at_once, of_log);
 }
 
+TEST(CalibrateLog, OfAMobileBaseIsRefused) {
+  Diagnostics found;
+  CalibrationSetup setup{
+      .robot = test::mobile_manipulator(),
+      .config = parse_config("base_link: base_link\nmodels: []\nfree_params: [base_rollout_scale]\n"
+                             "error_blocks: [{name: base, type: odometry_to_pose}]\n",
+                             "base.yaml", found)};
+  RecordedLog log{.names = {"a"}, .read = [](int) { return std::vector<Sample>(40); }};
+  EXPECT_THAT(
+      test::thrown<InputError>([&] { (void)prepare_log(std::move(setup), std::move(log), {}); }),
+      HasSubstr("take all samples at once: use 'kinecal calibrate'"));
+}
+
 TEST(CalibrateLog, NamesTheSampleOfAFileThatIsWrong) {
   ArmLog log(400);
   log.samples[390].joint_names[1] = "liftt";

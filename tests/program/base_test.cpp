@@ -46,6 +46,8 @@ TEST_F(BaseProgram, ASimulatedDriveIsCalibrated) {
   EXPECT_THAT(done("calibrate --urdf drive/robot.urdf --config base.yaml --samples samples.yaml "
                    "--output calibrated"),
               HasSubstr("it slipped"));
+  done("verify calibrated samples.yaml");
+  done("evaluate calibrated samples.yaml");
   const YAML::Node truth = YAML::Load(read("drive/truth.yaml")),
                    found = YAML::Load(read("calibrated/base_calibration.yaml"));
   for (const char* name :

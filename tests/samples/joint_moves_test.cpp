@@ -57,5 +57,25 @@ TEST(JointVelocities, OfARecordingThatHasThemAreKept) {
   EXPECT_THAT(samples[1].joint_velocities, ElementsAre(3.0, 4.0));
 }
 
+Sample of_recording(const std::string& source, double run, double ticks) {
+  Sample sample;
+  sample.source = source;
+  sample.conditions = {{std::string(kRun), run}, {"left", ticks}};
+  return sample;
+}
+
+TEST(Before, IsOfTheSameRecordingAndRun) {
+  std::vector<Sample> samples = {
+      of_recording("a.csv:1", 1.0, 0.0), of_recording("a.csv:2", 1.0, 5.0),
+      of_recording("a.csv:3", 2.0, 6.0), of_recording("b.csv:1", 2.0, 7.0),
+      of_recording("b.csv:2", 2.0, 9.0)};
+  set_before(samples, {"left"});
+  EXPECT_THAT(samples[0].before, IsEmpty());
+  EXPECT_EQ(samples[1].before.at("left"), 0.0);
+  EXPECT_THAT(samples[2].before, IsEmpty()) << "another run";
+  EXPECT_THAT(samples[3].before, IsEmpty()) << "another recording, whose run has the same number";
+  EXPECT_EQ(samples[4].before.at("left"), 7.0);
+}
+
 }  // namespace
 }  // namespace kinecal

@@ -16,6 +16,7 @@
 #include "kinecal/config/cameras/later_cameras.hpp"
 #include "kinecal/config/choose_images.hpp"
 #include "kinecal/config/choose_lenses.hpp"
+#include "kinecal/config/complete_samples.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
@@ -303,6 +304,7 @@ class LogProcedure {
     if (draw.recorded == Recorded::before) {
       add_rising(rising_of(draw.urdf_text, draw.urdf), samples);
     }
+    complete_samples(*draw.config, samples);
     if (draw.decides_cameras) {
       (void)prepare_later_cameras(draw.robot, *draw.config, draw.samples, samples, diagnostics);
     } else {
@@ -557,6 +559,11 @@ PreparedLog prepare_log(CalibrationSetup setup, RecordedLog log,
   setup.samples = std::move(draw.samples);
   CalibrationOptions of_draw = options;
   of_draw.exclude.clear();
+  if (setup.config && !looks_before(*setup.config).empty()) {
+    throw InputError(
+        "error blocks that compare samples in succession take all samples at once: use "
+        "'kinecal calibrate'");
+  }
   prepared.draw = prepare(std::move(setup), of_draw);
   return prepared;
 }

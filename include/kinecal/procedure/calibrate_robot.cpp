@@ -14,11 +14,11 @@
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/cameras/prepare_cameras.hpp"
+#include "kinecal/config/complete_samples.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/config/hold_parameters.hpp"
 #include "kinecal/config/magnetometer_start.hpp"
-#include "kinecal/config/place_planes.hpp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/explain/judge_causes.hpp"
 #include "kinecal/explain/would_help.hpp"
@@ -42,19 +42,6 @@ namespace {
   const std::vector<ModelConfig> models = models_of(config);
   return std::any_of(models.begin(), models.end(),
                      [](const ModelConfig& model) { return model.lens == kAnyLens; });
-}
-
-/// Names of the conditions of the sample before that error blocks take.
-[[nodiscard]] std::set<std::string> looks_before(const Config& config) {
-  std::set<std::string> names;
-  for (const StepConfig& step : config.steps) {
-    for (const BlockConfig& block : step.error_blocks) {
-      if (const BlockEntry* entry = entry_of(block)) {
-        names.insert(entry->looks_before.begin(), entry->looks_before.end());
-      }
-    }
-  }
-  return names;
 }
 
 /// Assembles the problems, and doubts the input.
@@ -161,26 +148,20 @@ void take_sample_poses(const AnyProblem& problem, std::vector<Sample>& samples) 
   }
 }
 
-/// The file of a sample: its source without the line; empty: unknown.
-[[nodiscard]] std::string file_of(const Sample& sample) {
-  const std::size_t colon = sample.source.rfind(':');
-  return colon == std::string::npos ? "" : sample.source.substr(0, colon);
-}
-
 /// Judges files that do not go with the others.  A few samples scatter too much to say so of their file.
 void judge_files(const Calibration& calibration, std::span<const Sample> samples,
                  JudgedResult& judged) {
   constexpr int kFewest = 10;  // samples of a file
   if (!judged.result.converged) return;
   std::map<std::string, int> counts, numbers;
-  for (const Sample& sample : samples) ++counts[file_of(sample)];
+  for (const Sample& sample : samples) ++counts[recording_of(sample)];
   std::vector<std::string> names;
   for (const auto& [file, count] : counts) {
     numbers[file] = count < kFewest ? -1 : static_cast<int>(std::ssize(names));
     if (count >= kFewest) names.push_back(file);
   }
   std::vector<int> files;
-  for (const Sample& sample : samples) files.push_back(numbers[file_of(sample)]);
+  for (const Sample& sample : samples) files.push_back(numbers[recording_of(sample)]);
   const Eigen::VectorXd values = judged.result.table.values();
   judge_misfits(misfits_of(*calibration.steps.back().problem,
                            {values.data(), static_cast<std::size_t>(values.size())}, files),
@@ -353,11 +334,8 @@ PreparedCalibration prepare(CalibrationSetup setup, const CalibrationOptions& op
   if (std::none_of(prepared.samples.begin(), prepared.samples.end(), has_moves)) {
     set_joint_moves(prepared.samples);
   }
-  if (const auto names = detail::looks_before(config); !names.empty()) {
-    set_before(prepared.samples, names);
-  }
   begin_magnetometer(config, prepared.samples, found);
-  place_planes(config, prepared.samples);
+  complete_samples(config, prepared.samples);
   prepared.decides_cameras = waits || !config.per_sample.empty();
   if (!prepare_cameras(prepared.robot, config, prepared.samples, found)) return prepared;
   if (!is_open && waits) hold_parameters(config, options.hold, found);

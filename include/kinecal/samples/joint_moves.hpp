@@ -11,6 +11,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "kinecal/samples/sample.hpp"
 
@@ -46,14 +47,21 @@ inline void set_joint_moves(std::span<Sample> samples) {
   }
 }
 
-/// Sets Sample::before, for error blocks that look at the sample before: the last one of the same run (kRun) in which
-/// none of the numbers that they look at is missing, such as a wall that was not seen.
-/// @param samples  of one recording, in its order
+/// The recording of a sample: its source without the line; empty: unknown.
+[[nodiscard]] inline std::string recording_of(const Sample& sample) {
+  const std::size_t colon = sample.source.rfind(':');
+  return colon == std::string::npos ? "" : sample.source.substr(0, colon);
+}
+
+/// Sets Sample::before, for error blocks that look at the sample before: the last one of the same recording and run (kRun) in
+/// which none of the numbers that they look at is missing, such as a wall that was not seen.
+/// @param samples  in the order of their recordings
 /// @param names    of the conditions and joints that the blocks look at
 inline void set_before(std::span<Sample> samples, const std::set<std::string>& names = {}) {
   const auto run_of = [](const Sample& sample) {
     const auto run = sample.conditions.find(kRun);
-    return run == sample.conditions.end() ? std::optional<double>() : run->second;
+    return std::pair(recording_of(sample),
+                     run == sample.conditions.end() ? std::optional<double>() : run->second);
   };
   const Sample* last = nullptr;
   for (Sample& sample : samples) {

@@ -8,7 +8,9 @@
 #include <map>
 #include <numeric>
 #include <string>
+#include <utility>
 
+#include "kinecal/samples/joint_moves.hpp"
 #include "kinecal/trust/noise/joint_effects.ipp"
 
 namespace kinecal {
@@ -145,9 +147,9 @@ PoseGroups by_run(const PoseGroups& poses, std::span<const Sample> samples) {
   PoseGroups runs;
   runs.are_runs = true;
   if (std::all_of(samples.begin(), samples.end(), is_numbered)) {
-    std::map<double, int> numbers;
+    std::map<std::pair<std::string, double>, int> numbers;
     for (const Sample& sample : samples) {
-      const double run = sample.conditions.at(kRun);
+      const std::pair run(recording_of(sample), sample.conditions.at(kRun));
       runs.of_sample.push_back(
           numbers.try_emplace(run, static_cast<int>(numbers.size())).first->second);
     }
