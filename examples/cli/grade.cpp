@@ -28,20 +28,15 @@ using detail::Json;
 
 /// A recording of the data set, and what is found in it.
 struct Episode {
-  std::string name;             ///< path
-  std::vector<Sample> samples;  ///< of it
-  std::string refused;          ///< why it cannot be judged; empty: it can
+  std::string name;                  ///< path
+  std::vector<Sample> samples = {};  ///< of it
+  std::string refused = {};          ///< why it cannot be judged; empty: it can
   bool is_consistent = true;
-  std::string reason;  ///< what cannot be said by a mover
+  std::string reason = {};  ///< why it is not consistent, if no mover alone explains it
   double probability = 1.0, statistic = 0.0, freedom = 0.0;
-  std::vector<NamedChange>
-      moved;  ///< what explains it, the most likely first; empty: nothing alone
-  std::vector<std::string> movers;  ///< "joint 'elbow'": of each
+  std::vector<NamedChange> moved = {};  ///< what explains it, the most likely first; empty: nothing
+  std::vector<std::string> movers = {};  ///< "joint 'elbow'": of each
 };
-
-std::string name_of(const NamedChange& of, const Robot& robot) {
-  return (of.is_frame ? "frame '" : robot.has_joint(of.owner) ? "joint '" : "'") + of.owner + "'";
-}
 
 /// The files that are given, and those in folders.
 std::vector<Episode> episodes_of(const GradeOptions& options) {
@@ -49,20 +44,12 @@ std::vector<Episode> episodes_of(const GradeOptions& options) {
   for (const std::string& given : options.episodes) {
     const bool is_bag = std::filesystem::exists(std::filesystem::path(given) / "metadata.yaml");
     if (!std::filesystem::is_directory(given) || is_bag) {
-      all.push_back(
-          {.name = given, .samples = {}, .refused = {}, .reason = {}, .moved = {}, .movers = {}});
+      all.push_back({.name = given});
       continue;
     }
     const std::vector<RecordingFiles> found = recordings_in(given);
     if (found.empty()) throw InputError(given + ": has no recordings");
-    for (const RecordingFiles& files : found) {
-      all.push_back({.name = files.path,
-                     .samples = {},
-                     .refused = {},
-                     .reason = {},
-                     .moved = {},
-                     .movers = {}});
-    }
+    for (const RecordingFiles& files : found) all.push_back({.name = files.path});
   }
   return all;
 }
@@ -94,7 +81,7 @@ void judge(const StoredResult& result, const GradeOptions& options, double level
     if (!std::isfinite(fresh.misfit)) {
       episode.is_consistent = false;
       episode.probability = 0.0;
-      episode.reason = "with the result, a recorded point is behind a camera";
+      episode.reason = kBehindCamera;
       return;
     }
     const Drift drift = drift_of(result, fresh, {level});
@@ -106,7 +93,7 @@ void judge(const StoredResult& result, const GradeOptions& options, double level
       const Mover& mover = drift.movers[static_cast<std::size_t>(i)];
       if (!mover.explains) break;
       episode.moved.push_back(named_change(mover, fresh.problem().table()));
-      episode.movers.push_back(name_of(episode.moved.back(), result.robot));
+      episode.movers.push_back(mover_name(result, mover.owner, mover.is_frame));
     }
     if (!drift.holds && episode.moved.empty()) {
       episode.reason = "nothing that moved alone explains it";

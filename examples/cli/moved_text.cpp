@@ -5,9 +5,24 @@
 
 #include <cmath>
 
+#include "kinecal/config/configured_sensor.hpp"
 #include "kinecal/text/reading.hpp"
 
 namespace kinecal::cli {
+
+std::string mover_name(const StoredResult& result, const std::string& owner, bool is_frame) {
+  bool is_sensor = false;
+  for (const StepConfig& step : result.config.steps) {
+    for (const ModelConfig& model : step.models) {
+      is_sensor = is_sensor || detail::mount_from(model).parameter_prefix() == owner;
+    }
+  }
+  const char* const kind = is_frame                        ? "frame"
+                           : result.robot.has_joint(owner) ? "joint"
+                           : is_sensor                     ? "sensor"
+                                                           : "error block";
+  return fmt::format("{} '{}'", kind, owner);
+}
 
 NamedChange named_change(const Mover& mover, const ParameterTable& table) {
   NamedChange named{mover.owner, mover.is_frame, {}, {}, mover.change, mover.deviation};

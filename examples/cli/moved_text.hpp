@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kinecal/parameters/parameter_table.hpp"
+#include "kinecal/tools/install/stored_result.hpp"
 #include "kinecal/trust/verify/drift.hpp"
 
 namespace kinecal::cli {
@@ -20,6 +21,12 @@ struct NamedChange {
   std::vector<double> change;           ///< of each
   std::vector<double> deviation;        ///< standard deviation of each change
 };
+
+/// "joint 'elbow'", "frame 'tracker'", "sensor 'head_camera'" or "error block 'ball'".
+/// @param owner     of the parameters: see Mover
+/// @param is_frame  its frame, not the offset of the joint
+[[nodiscard]] std::string mover_name(const StoredResult& result, const std::string& owner,
+                                     bool is_frame);
 
 /// The change of a mover.
 [[nodiscard]] NamedChange named_change(const Mover& mover, const ParameterTable& table);

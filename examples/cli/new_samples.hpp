@@ -13,6 +13,10 @@
 
 namespace kinecal::cli {
 
+/// Why no misfit of new samples is finite.
+inline constexpr const char* kBehindCamera =
+    "with this result, a recorded point is behind a camera";
+
 /// New samples and how they fit a result.
 struct NewSamples {
   std::vector<Sample> samples;

@@ -34,16 +34,8 @@ struct Check {
   [[nodiscard]] const ParameterTable& table() const { return fresh.problem().table(); }
 };
 
-/// "joint 'elbow'", "frame 'tracker'" or "camera 'head_camera'".
-std::string name_of(const Check& check, const Mover& mover) {
-  const AnyProblem& problem = check.fresh.problem();
-  if (mover.is_frame) return "frame '" + mover.owner + "'";
-  const auto& sensors = problem.sensors();
-  const bool is_sensor = std::any_of(sensors.begin(), sensors.end(), [&](const MountedSensor& of) {
-    return of.mount().parameter_prefix() == mover.owner;
-  });
-  const bool is_joint = problem.robot().has_joint(mover.owner);
-  return (is_joint ? "joint '" : is_sensor ? "sensor '" : "error block '") + mover.owner + "'";
+std::string mover_name(const Check& check, const Mover& mover) {
+  return cli::mover_name(check.result, mover.owner, mover.is_frame);
 }
 
 /// "0.57 deg +- 0.01 deg"
@@ -204,19 +196,19 @@ std::string movers_text(const Check& check) {
           "  but not it alone: residuals stay {:.2f} times too large, so something else has "
           "changed, or "
           "the result is less exact at these poses\n",
-          name_of(check, first), change_text(check, first), rest);
+          mover_name(check, first), change_text(check, first), rest);
     }
     return fmt::format(
         "No single joint, frame or sensor explains it: several have moved, or something that is no "
         "parameter (a bent link, another load, many bad captures)\n"
         "  nearest: {}, {}; residuals stay {:.2f} times too large\n",
-        name_of(check, first), change_text(check, first), rest);
+        mover_name(check, first), change_text(check, first), rest);
   }
   std::string text = "Most likely moved\n";
   constexpr int kListed = 4;
   for (int i = 0; i < std::min(drift.alike, kListed); ++i) {
     const Mover& mover = drift.movers[static_cast<std::size_t>(i)];
-    text += fmt::format("  {}{}: {}\n", i == 0 ? "" : "or ", name_of(check, mover),
+    text += fmt::format("  {}{}: {}\n", i == 0 ? "" : "or ", mover_name(check, mover),
                         change_text(check, mover));
     for (const std::string& same : mover.same) {
       text += fmt::format("     or '{}', which moves all that these samples show in the same way\n",
@@ -238,7 +230,7 @@ std::string next_text(const Check& check) {
   }
   if (drift.movers.empty() || !drift.movers.front().explains) return "Next: calibrate again\n";
   return fmt::format("Next: see whether {} is loose, then calibrate again\n",
-                     name_of(check, drift.movers.front()));
+                     mover_name(check, drift.movers.front()));
 }
 
 detail::Json json(const Check& check, const Mover& mover, bool alike) {
@@ -450,7 +442,7 @@ int verify(const RecheckOptions& options) {
   print(fresh.diagnostics);
   if (!fresh.diagnostics.errors.empty()) return kBadInput;
   if (!std::isfinite(fresh.misfit)) {
-    say("verdict: does not hold\n  - with this result, a recorded point is behind a camera\n");
+    say("verdict: does not hold\n  - {}\n", kBehindCamera);
     return kNotUsable;
   }
   const Check check{result, fresh, drift_of(result, fresh, {options.level}), options.level};

@@ -81,7 +81,7 @@ void verify(const StoredResult& result, const RecordingFiles& files, const Watch
     if (!std::isfinite(fresh.misfit)) {
       recording.state = RecordingState::does_not_hold;
       recording.probability = 0.0;
-      recording.reason = "with this result, a recorded point is behind a camera";
+      recording.reason = kBehindCamera;
       return;
     }
     const Drift drift = drift_of(result, fresh, {options.level, true});
@@ -267,7 +267,7 @@ class Watch {
         of.limit = options_.limit > 0.0 ? 1e-3 * options_.limit : 3.0 * result.pose->position;
       }
       if (mover != nullptr) {
-        of.mover = mover_name(*mover, result.robot.has_joint(mover->owner));
+        of.mover = mover_name(result, mover->owner, mover->is_frame);
         if (std::isfinite(of.limit) && of.limit > 0.0) limits.size = size_of(result, *mover);
       }
       limits.limit = of.limit;

@@ -177,7 +177,7 @@ Json json_of(const SeenRobot& robot) {
           {"passes_sigma", passes ? Json(passes->deviation) : Json()}};
 }
 
-/// The number of a parameter among those of a change in a recording; nullptr if it is not in it.
+/// The change of the same parameters in a recording; nullptr if it has none.
 const WatchedChange* change_in(const WatchedRecording& recording, const WatchedChange& of) {
   const auto found = std::find_if(recording.changes.begin(), recording.changes.end(),
                                   [&](const WatchedChange& other) { return other.is_of(of); });
@@ -233,10 +233,6 @@ Chart chart_of(const SeenRobot& robot, std::size_t number) {
 
 }  // namespace
 
-std::string mover_name(const WatchedChange& of, bool is_joint) {
-  return (of.is_frame ? "frame '" : is_joint ? "joint '" : "'") + of.owner + "'";
-}
-
 std::string day_text(double time) {
   const std::chrono::sys_days day{
       std::chrono::days(static_cast<std::int64_t>(std::floor(time / kDay)))};
@@ -253,16 +249,24 @@ std::string line_of(const SeenRobot& robot) {
 
 std::string summary_of(const std::vector<SeenRobot>& robots) {
   std::size_t hold = 0;
-  std::string recalibrate;
+  std::string recalibrate, not_known, faulty;
+  const auto add = [](std::string& names, const char* title, const SeenRobot& robot) {
+    names += (names.empty() ? title : ", ") + robot.name;
+  };
   for (const SeenRobot& robot : robots) {
-    if (robot.fault.empty() && robot.decision.state == FleetState::recalibrate) {
-      recalibrate += (recalibrate.empty() ? "; recalibrate " : ", ") + robot.name;
-    } else if (robot.fault.empty() && robot.decision.state != FleetState::not_known) {
+    if (!robot.fault.empty()) {
+      add(faulty, "; cannot be checked: ", robot);
+    } else if (robot.decision.state == FleetState::not_known) {
+      add(not_known, "; not known: ", robot);
+    } else if (robot.decision.state == FleetState::recalibrate) {
+      add(recalibrate, "; recalibrate ", robot);
+    } else {
       ++hold;
     }
   }
-  return fmt::format("{} of {} {}{}", hold, counted(robots.size(), "robot"),
-                     hold == 1 ? "holds" : "hold", recalibrate);
+  const bool is_singular = hold == 1 || robots.size() == 1;
+  return fmt::format("{} of {} {}{}{}{}", hold, counted(robots.size(), "robot"),
+                     is_singular ? "holds" : "hold", recalibrate, not_known, faulty);
 }
 
 Json watch_json(const std::vector<SeenRobot>& robots) {

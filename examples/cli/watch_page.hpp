@@ -25,9 +25,6 @@ struct SeenRobot {
   int written = 0;         ///< recordings that are still being written
 };
 
-/// "joint 'elbow'", "frame 'tracker'" or "'head_camera'".
-[[nodiscard]] std::string mover_name(const WatchedChange& of, bool is_joint);
-
 /// The day, UTC: "2026-11-30".
 /// @param time  seconds since 1970
 [[nodiscard]] std::string day_text(double time);
@@ -35,7 +32,7 @@ struct SeenRobot {
 /// "arm_3: recalibrate: ..."
 [[nodiscard]] std::string line_of(const SeenRobot& robot);
 
-/// "49 of 50 robots hold; recalibrate arm_3".
+/// "47 of 50 robots hold; recalibrate arm_3; not known: arm_4; cannot be checked: arm_5, arm_6".
 [[nodiscard]] std::string summary_of(const std::vector<SeenRobot>& robots);
 
 /// All of it for dashboards.
