@@ -4,8 +4,8 @@
 //   RosBase base({"ws://fetch:8765"}, {}, record);     // record: into a bag
 //   const std::string why = drive_base(base, {}, [] { return false; }, say);
 //
-// A base that is driven gets zero velocity when a run ends, when it is interrupted, when its odometry or its scans fall
-// silent, and when anything is thrown.  A connection that is lost takes no command: then the base's own driver must stop it.
+// A base that is driven gets zero velocity when a run ends, when it is interrupted, when its odometry falls silent, when scans
+// do during a run ahead, and when anything is thrown.  A connection that is lost takes no command: then the base's own driver must stop it.
 // Source: robot_calibration, base_calibration.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -87,14 +87,15 @@ class RosBase {
 
 /// How a base is driven.
 struct BaseDriving {
-  double turn = 1.5;                       ///< rad/s, at most; turns are also made at a third of it
-  double speed = 0.2;                      ///< m/s, at most; runs are also made at half of it
-  double distance = 1.0;                   ///< of a straight run, metres
-  double turn_acceleration = 2.0;          ///< rad/s^2
-  double acceleration = 0.5;               ///< m/s^2
-  double least_range = 0.4;                ///< metres: the base does not go nearer to what is ahead
-  std::chrono::milliseconds rest{1200};    ///< between runs
-  std::chrono::milliseconds silence{500};  ///< of odometry or scans: the base is stopped
+  double turn = 1.5;                     ///< rad/s, at most; turns are also made at a third of it
+  double speed = 0.2;                    ///< m/s, at most; runs are also made at half of it
+  double distance = 1.0;                 ///< of a straight run, metres
+  double turn_acceleration = 2.0;        ///< rad/s^2
+  double acceleration = 0.5;             ///< m/s^2
+  double least_range = 0.4;              ///< metres: the base does not go nearer to what is ahead
+  std::chrono::milliseconds rest{1200};  ///< between runs
+  /// Of odometry, or of scans during a run ahead: the base is stopped.
+  std::chrono::milliseconds silence{500};
 };
 
 /// Drives a full turn in both directions at two speeds; and, if there is a scan with room ahead, a straight run ahead and back

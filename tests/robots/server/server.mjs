@@ -246,6 +246,7 @@ const faults = {
   },
   half: ({ topics }) => (state.half = new Set(topics)),
   commands: () => base.commands,
+  base: ({ values }) => void Object.assign(base, values),
 };
 function makeFault(line) {
   const fault = JSON.parse(line);
