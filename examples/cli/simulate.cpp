@@ -131,8 +131,7 @@ int simulate_drive(const SimulateOptions& options) {
   const auto seed = static_cast<std::uint64_t>(std::max(1, options.seed));
   const SimulatedBase base =
       wrong_base(sizes_of_urdf(robot, urdf, base_link_of(robot), "differential"), seed);
-  std::vector<BaseRun> runs = turns_and_straight_runs();
-  for (const double turn : {0.6, -0.6, 0.3, -0.3}) runs.push_back({0.4, turn, 6.0});
+  const std::vector<BaseRun> runs = all_runs();
   const BaseRecording drive = simulate_base(base, runs, seed);
   const std::string truth = fmt::format(
       "track_width_scale: {}\nleft_rollout_scale: {}\nright_rollout_scale: {}\nimu_scale: {}\n"

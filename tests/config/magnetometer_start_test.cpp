@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "kinecal/config/read_config.hpp"
 #include "support/magnetometer.hpp"
 
@@ -54,12 +56,16 @@ TEST(MagnetometerStart, LeavesWhatIsGiven) {
 /// A base turns about one axis, and the sensor may be tilted on it.
 TEST(MagnetometerStart, PutsATurnIntoItsPlane) {
   const SimulatedMagnetometer of{.mount = {0.3, -0.2, 0.0}};
-  std::vector<Sample> samples = of.samples(200, 1);
+  constexpr int kCount = 200;
+  std::vector<Sample> samples = of.samples(kCount, 1);
   const auto plane = plane_of_readings(samples);
   ASSERT_TRUE(plane);
-  EXPECT_NEAR(plane->beside, of.noise, 0.1);
+  // Of the root of a mean of squares: four standard deviations.
+  EXPECT_NEAR(plane->beside, of.noise, 4.0 * of.noise / std::sqrt(2.0 * kCount));
   const Vector3<double> axis = exp(of.mount).transpose() * Vector3<double>(0, 0, 1);
-  EXPECT_NEAR(std::abs(plane->normal.dot(axis)), 1.0, 1e-3);
+  // It is tilted about two axes, each known to the noise over the radius of the circle and the root of half the readings.
+  const double tilt = 4.0 * of.noise / of.earth.head<2>().norm() / std::sqrt(0.5 * kCount);
+  EXPECT_NEAR(std::abs(plane->normal.dot(axis)), 1.0, tilt * tilt);
   Diagnostics found;
   Config config = config_of("", found);
   begin_magnetometer(config, samples, found);

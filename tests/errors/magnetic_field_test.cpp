@@ -22,12 +22,6 @@ Own truth_of(const test::SimulatedMagnetometer& of) {
           of.soft(1, 2),       of.earth.norm()};
 }
 
-test::SimulatedMagnetometer iron() {
-  test::SimulatedMagnetometer of{.noise = 0.0, .all_ways = true};
-  of.soft << 1.08, 0.03, -0.02, 0.03, 0.95, 0.01, -0.02, 0.01, 1.0;
-  return of;
-}
-
 double residual(const Own& own, const Sample& sample) {
   const std::array<double, 3> m = {sample.conditions.at("mag_x"), sample.conditions.at("mag_y"),
                                    sample.conditions.at("mag_z")};
@@ -39,7 +33,7 @@ TEST(MagneticField, KeepsTheLaws) {
 }
 
 TEST(MagneticField, IsZeroAtTheTruthOnly) {
-  const test::SimulatedMagnetometer of = iron();
+  const test::SimulatedMagnetometer of = test::with_soft_iron(0.0);
   const Own truth = truth_of(of);
   for (const Sample& sample : of.samples(40, 1)) EXPECT_NEAR(residual(truth, sample), 0.0, 1e-12);
   for (std::size_t p = 0; p < truth.size(); ++p) {

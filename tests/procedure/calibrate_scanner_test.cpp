@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
@@ -108,44 +109,38 @@ double truth_of(const std::string& name) {
 }
 
 TEST(CalibrateLineScanner, FindsItsPlaceOnTheFlangeByABallFromNothing) {
+  constexpr double kExact = 1e-6;  // metres and radians: where the solver stops without noise
   const PreparedCalibration prepared = prepare(ball_setup(profiles_of({})));
   ASSERT_THAT(prepared.diagnostics.errors, IsEmpty());
   const CalibrationResult result = calibrate(prepared.calibration);
   for (const int p : result.calibrated) {
     const Parameter& found = result.table[p];
-    EXPECT_NEAR(found.value, truth_of(found.name), 1e-6) << found.name;
+    EXPECT_NEAR(found.value, truth_of(found.name), kExact) << found.name;
   }
 }
 
+/// Points of a profile share the error of its pose.  KINECAL_REPETITIONS=60 prints the figures of MANUAL.md.
 TEST(CalibrateLineScanner, CoversTheTruthWherePosesOfTheFlangeErr) {
   test::IntervalCoverage coverage("line scanner and a ball");
-  const int repetitions = test::repetitions_of_study(200, 3);
-  double squares = 0.0, count = 0.0;
+  const int repetitions = std::max(2, test::repetitions_of_study(200, 3));
   for (int seed = 1; seed <= repetitions; ++seed) {
     const CalibratedRobot calibrated = calibrate_robot(ball_setup(
         profiles_of({.noise = 5e-5, .pose_noise = 1e-4, .seed = static_cast<unsigned>(seed)})));
     ASSERT_TRUE(calibrated.is_usable()) << calibrated.judgement.reasons.front();
     coverage.add(calibrated.result, calibrated.assessments.back(), truth_of);
-    for (const int p : calibrated.result.calibrated) {
-      const Parameter& found = calibrated.result.table[p];
-      const auto deviation = calibrated.deviation(p);
-      ASSERT_TRUE(deviation) << found.name;
-      squares += std::pow((found.value - truth_of(found.name)) / *deviation, 2);
-      ++count;
-    }
   }
-  EXPECT_LT(std::sqrt(squares / count), 1.8) << "points of a profile share the error of its pose";
-  EXPECT_GT(std::sqrt(squares / count), 0.4);
+  coverage.check();
 }
 
 TEST(CalibrateLineScanner, LeavesOutWhatIsBehindTheBall) {
+  constexpr double kLeft = 5e-4;  // metres and radians: ten times the noise of a point
   const CalibratedRobot calibrated = calibrate_robot(ball_setup(
       profiles_of({.noise = 5e-5, .table = true}), ", loss: {type: tukey, scale: 0.0003}"));
   ASSERT_TRUE(calibrated.is_usable()) << calibrated.judgement.reasons.front();
   EXPECT_THAT(calibrated.setup.diagnostics.notes, testing::Contains(HasSubstr("of 1800 points, ")));
   for (const int p : calibrated.result.calibrated) {
     const Parameter& found = calibrated.result.table[p];
-    EXPECT_NEAR(found.value, truth_of(found.name), 5e-4) << found.name;
+    EXPECT_NEAR(found.value, truth_of(found.name), kLeft) << found.name;
   }
 }
 
@@ -214,6 +209,7 @@ std::vector<Sample> board_samples(const Pose<double>& camera_T_lidar, double noi
 }
 
 TEST(CalibrateLidar, StandsWhereItsPointsLieOnTheBoardsThatTheCameraSees) {
+  constexpr double kExact = 1e-5;  // metres and radians: where the solver stops without noise
   const Pose<double> nominal{(Matrix3<double>() << 0, -1, 0, 0, 0, -1, 1, 0, 0).finished(),
                              Vector3<double>::Zero()};
   const Pose<double> correction{exp(Vector3<double>(0.03, -0.02, 0.05)),
@@ -246,7 +242,7 @@ TEST(CalibrateLidar, StandsWhereItsPointsLieOnTheBoardsThatTheCameraSees) {
   for (const char axis : {'x', 'y', 'z', 'a', 'b', 'c'}) {
     const std::string name = std::string("lidar_joint_") + axis;
     const double truth = test::of_frame(axis, correction);
-    EXPECT_NEAR(exact.table[exact.table.index(name)].value, truth, 1e-5) << name;
+    EXPECT_NEAR(exact.table[exact.table.index(name)].value, truth, kExact) << name;
     const int p = noisy.result.table.index(name);
     const auto deviation = noisy.deviation(p);
     ASSERT_TRUE(deviation) << name;

@@ -11,25 +11,18 @@
 #include <numbers>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/base_problem.hpp"
 #include "support/interval_coverage.hpp"
+#include "support/wrong_base.hpp"
 
 namespace kinecal {
 namespace {
 
+using test::wrong_base;
 using testing::HasSubstr;
-
-/// A base with errors of 2 %.
-SimulatedBase wrong_base() {
-  SimulatedBase base;
-  base.track_width_scale = 1.02;
-  base.left_rollout_scale = base.right_rollout_scale = 0.98;
-  base.imu_scale = 0.98;
-  base.imu_bias = 0.002;
-  return base;
-}
 
 /// With a millionth of the noise.
 SimulatedBase exact(SimulatedBase base) {
@@ -38,13 +31,6 @@ SimulatedBase exact(SimulatedBase base) {
     *noise *= 1e-6;
   }
   return base;
-}
-
-/// Turns in place, straight runs and arcs.
-std::vector<BaseRun> all_runs() {
-  std::vector<BaseRun> runs = turns_and_straight_runs();
-  for (const double turn : {0.6, -0.6, 0.3, -0.3}) runs.push_back({0.4, turn, 6.0});
-  return runs;
 }
 
 double value(const JudgedResult& judged, const std::string& name) {
@@ -59,7 +45,7 @@ JudgedResult calibrated(const SimulatedBase& base, const SimulatedBase& seen_as,
 }
 
 TEST(SimulatedBase, ErrorsAreFound) {
-  constexpr double kExact = 1e-7;
+  constexpr double kExact = 1e-7;  // a millionth of 2 mm and 2 mrad, over runs of a metre or a turn
   const SimulatedBase noisy = wrong_base(), base = exact(noisy);
   const std::vector<std::string> scales{"track_width_scale", "rollout_scale"};
   for (const JudgedResult& judged : {calibrated<DifferentialToPose>(base, noisy, scales),
@@ -78,6 +64,7 @@ TEST(SimulatedBase, ErrorsAreFound) {
 }
 
 TEST(SimulatedBase, WheelsAndTheMountOfTheLaserAreFoundTogether) {
+  constexpr double kExact = 1e-7;  // as above
   SimulatedBase noisy = wrong_base(), base = exact(noisy);
   base.left_rollout_scale = 0.985;
   base.mount = {0.26, -0.02, 0.05};
@@ -90,7 +77,7 @@ TEST(SimulatedBase, WheelsAndTheMountOfTheLaserAreFoundTogether) {
                                             {"x", 0.26},
                                             {"y", -0.02},
                                             {"yaw", 0.05}};
-  for (const auto& [name, is] : truth) EXPECT_NEAR(value(judged, name), is, 1e-7) << name;
+  for (const auto& [name, is] : truth) EXPECT_NEAR(value(judged, name), is, kExact) << name;
 }
 
 /// Both wheels and each of them: a combination that nothing determines keeps its start, and is said.
@@ -188,12 +175,17 @@ TEST(SimulatedBase, SlipsAreLeftOut) {
   std::set<int> left_out;
   for (const LeftOutSample& sample : judged.left_out) {
     left_out.insert(sample.number - 1);
-    EXPECT_THAT(sample.why, HasSubstr("_wheel' advanced by 0.8"));
+    EXPECT_THAT(sample.why, HasSubstr("_wheel' advanced by 0.8"));  // 0.05 m of a radius of 0.06 m
     EXPECT_THAT(sample.why, HasSubstr("too much: it slipped"));
   }
   EXPECT_EQ(left_out, std::set<int>(recording.slipped.begin(), recording.slipped.end()));
-  EXPECT_NEAR(value(judged, "track_width_scale"), 1.02, 0.002);
-  EXPECT_NEAR(value(judged, "rollout_scale"), 0.98, 0.002);
+  for (const auto& [name, truth] :
+       {std::pair("track_width_scale", 1.02), {"rollout_scale", 0.98}}) {
+    const auto deviation =
+        judged.assessments.back().deviation(judged.result.table.index("base_" + std::string(name)));
+    ASSERT_TRUE(deviation) << name;
+    EXPECT_NEAR(value(judged, name), truth, 4.0 * *deviation) << name;
+  }
 }
 
 /// What base_calibration of robot_calibration computes: means of what the wall shows over what was counted, of turns in place
@@ -225,19 +217,20 @@ UpstreamRatios upstream_ratios(const std::vector<Sample>& samples, const std::st
 }
 
 TEST(SimulatedBase, UpstreamsFormulaOfRos1HasTheReciprocalOfTheTrackWidth) {
+  constexpr double kExact = 1e-6;  // its means have the noise of two samples of each run
   const std::vector<Sample> samples =
       simulate_base(exact(wrong_base()), turns_and_straight_runs(), 1).samples;
   // The true turn over the reported one: the odometry divides by the track width, and rolls less.
-  EXPECT_NEAR(upstream_ratios(samples, "odom_yaw").turn, 0.98 / 1.02, 1e-6);
+  EXPECT_NEAR(upstream_ratios(samples, "odom_yaw").turn, 0.98 / 1.02, kExact);
   const JudgedResult judged = test::judged_base(test::block_of<OdometryToWall>(wrong_base()),
                                                 {"track_width_scale", "rollout_scale"}, samples);
   EXPECT_NEAR(value(judged, "track_width_scale") / value(judged, "rollout_scale"), 1.02 / 0.98,
-              1e-6);
+              kExact);
 }
 
-/// Since 0.10: rollout_scale is the mean of the ways, track_width_scale is that over the mean of the turns.  Ours looks at
-/// all samples, and is not farther from the truth.
-TEST(SimulatedBase, UpstreamsFormulaBesideOurs) {
+/// Upstream since 0.10: rollout_scale is the mean of the ways, track_width_scale is that over the mean of the turns.  Ours
+/// looks at all samples.
+TEST(SimulatedBase, IsNotFartherFromTheTruthThanUpstreamsFormula) {
   const int repetitions = test::repetitions_of_study(100, 12);
   double upstream = 0.0, ours = 0.0;  // sums of squares
   for (int n = 0; n < repetitions; ++n) {
@@ -248,8 +241,8 @@ TEST(SimulatedBase, UpstreamsFormulaBesideOurs) {
     const JudgedResult judged = test::judged_base(test::block_of<OdometryToWall>(wrong_base()),
                                                   {"track_width_scale", "rollout_scale"}, samples);
     const double track = ratios.way / ratios.turn;
-    EXPECT_NEAR(track, 1.02, 0.02);
-    EXPECT_NEAR(ratios.way, 0.98, 0.02);
+    EXPECT_NEAR(track, 1.02, 0.02) << "nearer to the truth than the nominal 1";
+    EXPECT_NEAR(ratios.way, 0.98, 0.02) << "nearer to the truth than the nominal 1";
     upstream += (track - 1.02) * (track - 1.02) + (ratios.way - 0.98) * (ratios.way - 0.98);
     const double of_track = value(judged, "track_width_scale") - 1.02,
                  of_rollout = value(judged, "rollout_scale") - 0.98;
@@ -257,6 +250,7 @@ TEST(SimulatedBase, UpstreamsFormulaBesideOurs) {
   }
   RecordProperty("upstream_rms", std::to_string(std::sqrt(0.5 * upstream / repetitions)));
   RecordProperty("ours_rms", std::to_string(std::sqrt(0.5 * ours / repetitions)));
+  // Both err by the noise of the same drives; a fifth is what a sum of a dozen drives may differ by.
   EXPECT_LT(ours, 1.2 * upstream);
 }
 

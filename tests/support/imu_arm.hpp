@@ -62,8 +62,8 @@ struct SimulatedImu {
     const auto xyz = [](const Vector3<double>& v) {
       return detail::fields("x", v.x(), "y", v.y(), "z", v.z());
     };
-    const int count = static_cast<int>((kPoses - 1) * (kRest + kMove) + kRest / kStep * kStep) *
-                      static_cast<int>(1.0 / kStep);
+    const int count =
+        static_cast<int>(std::lround(((kPoses - 1) * (kRest + kMove) + kRest) / kStep));
     for (int i = 0; i < count; ++i) {
       const double time = kStep * i;
       const Stamp stamp(std::llround(1e9 * (1000.0 + time)));

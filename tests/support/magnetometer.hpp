@@ -45,4 +45,11 @@ struct SimulatedMagnetometer {
   }
 };
 
+/// Turned all ways, with soft iron: gains that differ by 13 %, and axes that are not at right angles.
+inline SimulatedMagnetometer with_soft_iron(double noise = 0.3) {
+  SimulatedMagnetometer of{.noise = noise, .all_ways = true};
+  of.soft << 1.08, 0.03, -0.02, 0.03, 0.95, 0.01, -0.02, 0.01, 1.0;
+  return of;
+}
+
 }  // namespace kinecal::test

@@ -114,6 +114,12 @@ std::vector<BaseRun> turns_and_straight_runs() {
   return runs;
 }
 
+std::vector<BaseRun> all_runs() {
+  std::vector<BaseRun> runs = turns_and_straight_runs();
+  for (const double turn : {0.6, -0.6, 0.3, -0.3}) runs.push_back({0.4, turn, 6.0});
+  return runs;
+}
+
 BaseRecording simulate_base(const SimulatedBase& base, std::span<const BaseRun> runs,
                             std::uint64_t seed) {
   BaseRecording recording;

@@ -49,6 +49,9 @@ struct BaseRun {
 /// One turn in place in both directions at several speeds, and a metre ahead and back: what base_calibration drives.
 [[nodiscard]] std::vector<BaseRun> turns_and_straight_runs();
 
+/// These runs and arcs, which also show where the sensor is on the base.
+[[nodiscard]] std::vector<BaseRun> all_runs();
+
 /// A simulated recording.
 struct BaseRecording {
   /// Conditions: left_wheel, right_wheel, odom_x, odom_y, odom_yaw, gyro_yaw, time, track_x, track_y, track_yaw, run;
