@@ -426,7 +426,7 @@ Words calibration(const Call& call, const std::string& config, const std::string
   return line;
 }
 
-/// How a program of ROS is told its configuration.
+/// How to give a program of ROS its configuration.
 std::string how_configured(const Call& call, const std::string& file) {
   const std::string name(call.program->name);
   return "give it with '" + name + " … --ros-args --params-file " + file + "' or '" + name +
