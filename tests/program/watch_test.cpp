@@ -113,7 +113,8 @@ TEST_F(Watched, NamesTheOneRobotThatDriftsAndNoOther) {
 
 TEST_F(Watched, ReadsOnlyWhatIsNewAndWhole) {
   add_robot("fleet/arm", 100);
-  EXPECT_THAT(watch().out, HasSubstr("arm: not known: no recording yet"));
+  EXPECT_THAT(watch().out, AllOf(HasSubstr("arm: not known: no recording yet"),
+                                 HasSubstr("\n0 of 1 robot holds; not known: arm\n")));
   add_night("fleet/arm", 3, 1);
   add_night("fleet/arm", 2, 2);
   write("fleet/arm/recordings/night_99.yaml",
@@ -133,6 +134,9 @@ TEST_F(Watched, ReadsOnlyWhatIsNewAndWhole) {
               HasSubstr("; 1 still being written"));
   fs::remove_all(folder_ / "fleet/arm/recordings");
   EXPECT_THAT(watch().out, HasSubstr("arm: holds: 3 recordings")) << "the history has them";
+
+  fs::create_directories(folder_ / "fleet/broken/result");
+  EXPECT_THAT(watch().out, HasSubstr("\n1 of 2 robots holds; cannot be checked: broken\n"));
 
   write("fleet/history.sqlite",
         "something else, which is certainly not a data base of SQLite, but long enough");

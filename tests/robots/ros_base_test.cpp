@@ -35,9 +35,9 @@ const BaseDriving kFast = {.turn = 20.0,
                            .rest = milliseconds(150),
                            .silence = milliseconds(5000)};
 
-/// How late the base stops at most, seconds: a period of commands and one of the server, 20 ms each, and as much again for a
-/// busy machine.
-constexpr double kLate = 0.1;
+/// The base of the server stops by itself after so many seconds without a command: however busy the machine is, it goes no
+/// longer after the last one.
+constexpr double kTimeout = 0.25;
 
 class RosBaseTest : public testing::TestWithParam<std::string> {
  protected:
@@ -102,7 +102,9 @@ TEST_P(RosBaseTest, DrivesTurnsAndStraightRunsAndStops) {
   EXPECT_EQ(ahead, 4.0);
   EXPECT_EQ(back, -4.0);
   EXPECT_THAT(all.back(), ElementsAre(0.0, 0.0));
-  // It is where it began, but for a tenth of a second at the speeds of its two runs back.
+  // It is where it began, but for what its two runs back are late: a period of commands and one of the server, 20 ms each, and
+  // as much again for a busy machine.
+  constexpr double kLate = 0.1;  // seconds
   EXPECT_LT(std::hypot(base.odometry()->x, base.odometry()->y),
             kLate * (0.5 * kFast.speed + kFast.speed));
 }
@@ -136,7 +138,7 @@ TEST_P(RosBaseTest, DoesNotGoNearerThanTheLeastRangeInARun) {
   EXPECT_EQ(why, "");
   EXPECT_TRUE(is_near);
   EXPECT_LT(nearest, driving.least_range) << "a metre ahead, it would touch the wall";
-  EXPECT_GT(nearest, driving.least_range - kLate * driving.speed);
+  EXPECT_GT(nearest, driving.least_range - kTimeout * driving.speed);
 }
 
 TEST_P(RosBaseTest, AnInterruptionStopsIt) {
@@ -172,12 +174,12 @@ TEST_P(RosBaseTest, SilentOdometryStopsIt) {
   EXPECT_THAT(commands().back(), ElementsAre(0.0, 0.0));
 }
 
-/// A turn in place needs no scan; a run ahead does.
+/// A turn in place needs no scan; a run ahead does.  Odometry would fall silent by chance on a busy machine, in half a second.
 TEST_P(RosBaseTest, SilentScansStopARunAheadButNoTurn) {
   start();
   bool is_silent = false;
   BaseDriving driving = kFast;
-  driving.silence = milliseconds(500);
+  driving.silence = milliseconds(2000);
   const std::string why = drive(driving, [&] {
     if (!is_silent && !said_.empty()) {
       server_->make(R"({"fault": "silent", "topics": ["/base_scan"]})");
@@ -185,17 +187,17 @@ TEST_P(RosBaseTest, SilentScansStopARunAheadButNoTurn) {
     }
     return false;
   });
-  EXPECT_EQ(why, "no scan for 500 ms: the base was stopped");
+  EXPECT_EQ(why, "no scan for 2000 ms: the base was stopped");
   EXPECT_EQ(said_.size(), 5u) << "four turns and a run: " << testing::PrintToString(said_);
   EXPECT_THAT(commands().back(), ElementsAre(0.0, 0.0));
-  EXPECT_LT(std::hypot(base_->odometry()->x, base_->odometry()->y), kLate * 0.5 * driving.speed);
+  EXPECT_LT(std::hypot(base_->odometry()->x, base_->odometry()->y), kTimeout * 0.5 * driving.speed);
 }
 
 TEST_P(RosBaseTest, ScansThatFallSilentStopTheRun) {
   start();
   bool is_silent = false;
   BaseDriving driving = kFast;
-  driving.silence = milliseconds(500);
+  driving.silence = milliseconds(2000);
   driving.speed = 0.5;  // a run of a metre takes four seconds
   const std::string why = drive(driving, [&] {
     const bool is_ahead = !said_.empty() && said_.back().find(" ahead at ") != std::string::npos;
@@ -205,10 +207,10 @@ TEST_P(RosBaseTest, ScansThatFallSilentStopTheRun) {
     }
     return false;
   });
-  EXPECT_EQ(why, "no scan for 500 ms: the base was stopped");
+  EXPECT_EQ(why, "no scan for 2000 ms: the base was stopped");
   const double gone = std::hypot(base_->odometry()->x, base_->odometry()->y);
   EXPECT_GT(gone, 0.0);
-  EXPECT_LT(gone, (0.5 + kLate) * 0.5 * driving.speed) << "half a second at half the speed";
+  EXPECT_LT(gone, (2.0 + kTimeout) * 0.5 * driving.speed) << "two seconds at half the speed";
 }
 
 TEST_P(RosBaseTest, ALostConnectionIsSaid) {

@@ -42,6 +42,7 @@ TEST_F(GravityBag, EachRestIsASample) {
     const Pose<double> base_T_imu = forward_kinematics(
         chain, [&](const std::string& joint) { return sample.position(joint).value(); });
     const Vector3<double> up = base_T_imu.rotation.transpose() * Vector3<double>(0, 0, 9.81);
+    // 9.81 m/s^2 times a tilt of 3 mrad.
     EXPECT_NEAR(sample.conditions.at("ax"), up.x(), 0.03);
     EXPECT_NEAR(sample.conditions.at("az"), up.z(), 0.03);
   }
