@@ -173,7 +173,7 @@ target_link_libraries(kinecal_headers INTERFACE Eigen3::Eigen Threads::Threads)
 set(KINECAL_CORE_FOLDERS text geometry kinematics parameters samples sensors errors problem evaluation
                          crate testing)
 kinecal_add_library(core UNIT 16
-  ALONE evaluation/problem.ipp evaluation/built_in_sensors.ipp evaluation/built_in_blocks.ipp
+  ALONE kinematics/pose_batch.ipp evaluation/problem.ipp evaluation/built_in_sensors.ipp evaluation/built_in_blocks.ipp
         evaluation/built_in_base_blocks.ipp evaluation/built_in_pose_blocks.ipp  # these take longest
   FOLDERS ${KINECAL_CORE_FOLDERS} core linkage
   LINK Eigen3::Eigen Threads::Threads)

@@ -15,4 +15,5 @@
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/geometry/scalar.hpp"
+#include "kinecal/geometry/sin_cos.hpp"
 #include "kinecal/geometry/traced.hpp"

@@ -12,6 +12,7 @@
 #include "kinecal/kinematics/joint.hpp"
 #include "kinecal/kinematics/joint_state.hpp"
 #include "kinecal/kinematics/known_name.hpp"
+#include "kinecal/kinematics/pose_batch.hpp"
 #include "kinecal/kinematics/pose_walker.hpp"
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/kinematics/robot_data.hpp"
