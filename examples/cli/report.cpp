@@ -13,13 +13,10 @@
 #include "kinecal/files/checksum.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/results/result_files.hpp"
+#include "kinecal/procedure/calibrated_page.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/json.hpp"
-#include "kinecal/report/scene_clouds.hpp"
-#include "kinecal/report/scene_json.hpp"
-#include "kinecal/trust/uncertainty/workspace_map.hpp"
 #include "output_file.hpp"
-#include "scene.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -93,30 +90,17 @@ std::string day() {
 
 std::string page(const CalibrateOptions& options, const InputTexts& texts,
                  const CalibratedRobot& calibrated) {
-  ReportData data = report_data(calibrated.setup.calibration, calibrated, calibrated.samples,
-                                calibrated.left_out_samples);
-  data.version = version();
-  data.command = options.command;
-  data.date = day();
-  data.inputs = input_files(options, texts);
-  const Findings& findings = calibrated;
-  if (!findings.assessments.empty() && !findings.assessments.back().compared.empty()) {
-    constexpr int kPoses = 400;
-    std::vector<double> values;
-    for (const Parameter& parameter : findings.result.table) values.push_back(parameter.value);
-    const std::size_t step = findings.assessments.size() - 1;
-    data.workspace = workspace_map(*calibrated.setup.calibration.steps[step].problem,
-                                   findings.assessments.back(),
-                                   findings.assessments.back().compared[0], values, kPoses);
-  }
-  RobotScene scene = scene_of(calibrated, options.mesh_paths, {});
-  for (const KnownPoint& point : data.workspace) {
-    const auto& [x, y, z] = point.p_base;
-    scene.workspace.push_back({x, y, z, point.deviation});
-  }
-  add_clouds(options.samples, scene);
-  add_points(scene, data);
-  return html_report(data, scene_json(scene));
+  Diagnostics diagnostics;
+  std::string text = calibrated_page(calibrated,
+                                     {.version = version(),
+                                      .date = day(),
+                                      .command = options.command,
+                                      .inputs = input_files(options, texts),
+                                      .mesh_paths = options.mesh_paths,
+                                      .recordings = options.samples},
+                                     diagnostics);
+  print(diagnostics);
+  return text;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "kinecal/procedure/calibrate_log.hpp"
 #include "kinecal/procedure/calibrate_robot.hpp"
 #include "kinecal/procedure/calibrated_files.hpp"
+#include "kinecal/procedure/calibrated_page.hpp"
 #include "kinecal/procedure/crate_config.hpp"
 #include "kinecal/procedure/judge_read_back.hpp"
 #include "kinecal/procedure/matched_step.hpp"
