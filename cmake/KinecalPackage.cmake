@@ -5,6 +5,7 @@
 #   kinecal-robot-calibration  the programs of robot_calibration as links to kinecal, in a prefix of their own: no file is in
 #                   ros-<distro>-robot-calibration, too, so both may be installed, and the shell chooses (setup.bash).  It does
 #                   not provide that package, which also has messages and headers.
+#   python3-kinecal  if there is pybind11: the package `kinecal` of Python
 #   kinecal-mpi     if there is MPI: the plug-in for processes of mpirun
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "kinecal developers")
@@ -55,15 +56,22 @@ set(CPACK_DEBIAN_ROBOT_CALIBRATION_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_ROBOT_CALIBRATION_PACKAGE_DEPENDS "kinecal (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_ROBOT_CALIBRATION_DESCRIPTION "kinecal in the place of robot_calibration of ROS
  Links under the names of its programs, in a prefix of their own.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-kinecal)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "kinecal (= ${PROJECT_VERSION}), python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "kinecal in Python: arrays in, a verdict out
+ Kinematics of any URDF, calibration with error bars and a verdict.")
 include(CPack)
 cpack_add_component_group(kinecal)
 cpack_add_component_group(dev)
 cpack_add_component_group(mpi)
 cpack_add_component_group(opencv)
 cpack_add_component_group(robot_calibration)
+cpack_add_component_group(python)
 cpack_add_component(program GROUP kinecal)
 cpack_add_component(Unspecified GROUP dev)
 cpack_add_component(headers GROUP dev)
 cpack_add_component(plugin GROUP mpi)
 cpack_add_component(opencv_plugin GROUP opencv)
 cpack_add_component(robot_calibration GROUP robot_calibration)
+cpack_add_component(python GROUP python)

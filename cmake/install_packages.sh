@@ -5,10 +5,11 @@ set -eu
 
 packages="g++ cmake ninja-build libeigen3-dev libceres-dev liburdfdom-dev libyaml-dev pkg-config \
 libpugixml-dev libfmt-dev zlib1g-dev libcli11-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev \
-libpng-dev libjpeg-dev libtiff-dev libapriltag-dev libboost-dev nlohmann-json3-dev libssl-dev dpkg-dev file"
+libpng-dev libjpeg-dev libtiff-dev libapriltag-dev libboost-dev nlohmann-json3-dev libssl-dev dpkg-dev file \
+pybind11-dev python3-dev python3-numpy"
 if [ "${1:-}" = test ]; then
   packages="$packages ccache lld clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 libgtest-dev libgmock-dev libbenchmark-dev liborocos-kdl-dev \
-libopenmpi-dev openmpi-bin doxygen libfastcdr-dev libyaml-cpp-dev libopencv-dev python3 python3-jsonschema python3-yaml chromium"
+libopenmpi-dev openmpi-bin doxygen libfastcdr-dev libyaml-cpp-dev libopencv-dev python3 python3-jsonschema python3-yaml mypy chromium"
   command -v npm >/dev/null || packages="$packages nodejs npm"  # others ship both as one package
 fi
 

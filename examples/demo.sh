@@ -7,7 +7,7 @@ echo "Installs what is missing, compiles the program kinecal (some minutes on tw
 echo "calibrates a simulated robot with it."
 cmake/install_packages.sh
 cmake --preset release -B build/demo -DKINECAL_BUILD_TESTS=OFF -DKINECAL_BUILD_BENCHMARKS=OFF \
-  -DKINECAL_X86_64_LEVELS=OFF >/dev/null
+  -DKINECAL_X86_64_LEVELS=OFF -DKINECAL_PYTHON=OFF >/dev/null
 # The last two are for `cmake --install build/demo`.
 cmake --build build/demo --target kinecal_program generate_example_samples kinecal_robot_header \
   kinecal_descriptions

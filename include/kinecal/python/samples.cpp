@@ -1,0 +1,254 @@
+// Samples in Python: from arrays, from files, and as arrays again.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/python/samples.hpp"
+
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "kinecal/files/cameras/camera_info.hpp"
+#include "kinecal/files/cameras/read_camera_file.hpp"
+#include "kinecal/files/cameras/set_camera.hpp"
+#include "kinecal/files/recordings/read_recording.hpp"
+#include "kinecal/files/recordings/write_recording.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
+#include "kinecal/python/arrays.hpp"
+#include "kinecal/samples/joint_moves.hpp"
+
+namespace kinecal::python {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// What a sensor saw, as arrays give it.
+struct SensorArray {
+  std::string sensor;    ///< name
+  std::string frame;     ///< link or frame in which features are given
+  Numbers features;      ///< (n, k, 2 or 3) pixels or points, or (n, k, 4, 4) poses; NaN: not seen
+  std::vector<int> ids;  ///< of the k features; empty: by their place
+};
+
+/// A feature of an array; nullopt if it was not seen.
+std::optional<Feature> feature_at(const SensorArray& of, const double* numbers, std::size_t size) {
+  Feature feature{.frame = of.frame};
+  for (std::size_t i = 0; i < size; ++i) {
+    if (std::isnan(numbers[i])) return std::nullopt;
+  }
+  if (size < 16) {
+    for (std::size_t i = 0; i < size; ++i) feature.point(static_cast<Eigen::Index>(i)) = numbers[i];
+    return feature;
+  }
+  feature.rotation.emplace();
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) (*feature.rotation)(i, k) = numbers[4 * i + k];
+    feature.point(i) = numbers[4 * i + 3];
+  }
+  return feature;
+}
+
+/// Adds what a sensor saw to each sample.  Features that were not seen are left out where they have ids, else they keep
+/// their place as NaN: it identifies the others.
+void add_observations(const SensorArray& of, std::vector<Sample>& samples) {
+  const std::size_t count = size_of(of.features, 1);
+  const std::size_t size = static_cast<std::size_t>(of.features.size()) /
+                           std::max<std::size_t>(1, samples.size() * count);
+  const double* numbers = of.features.data();
+  for (Sample& sample : samples) {
+    Observation observation;
+    observation.sensor = of.sensor;
+    bool is_seen = false;
+    for (std::size_t k = 0; k < count; ++k, numbers += size) {
+      std::optional<Feature> feature = feature_at(of, numbers, size);
+      is_seen = is_seen || feature.has_value();
+      if (!feature && !of.ids.empty()) continue;
+      if (!feature)
+        feature = Feature{.frame = of.frame, .point = Vector3<double>::Constant(kMissing)};
+      if (!of.ids.empty()) feature->id = of.ids[k];
+      observation.features.push_back(*std::move(feature));
+    }
+    if (is_seen) sample.observations.push_back(std::move(observation));
+  }
+}
+
+SampleList samples_of_arrays(const std::vector<std::string>& joints, const Numbers& positions,
+                             const std::vector<SensorArray>& sensors,
+                             const std::map<std::string, Numbers>& conditions,
+                             const std::optional<Numbers>& stamps, const std::string& name) {
+  SampleList list;
+  list.samples.resize(size_of(positions, 0));
+  const double* position = positions.data();
+  for (std::size_t i = 0; i < list.samples.size(); ++i) {
+    Sample& sample = list.samples[i];
+    sample.joint_names = joints;
+    sample.joint_positions.assign(position, position + joints.size());
+    position += joints.size();
+    sample.source = name + ":" + std::to_string(i + 1);
+    for (const auto& [condition, values] : conditions)
+      sample.conditions[condition] = values.data()[i];
+    if (stamps && !std::isnan(stamps->data()[i])) {
+      sample.stamp = std::chrono::nanoseconds(std::llround(1e9 * stamps->data()[i]));
+    }
+  }
+  for (const SensorArray& sensor : sensors) add_observations(sensor, list.samples);
+  set_joint_moves(list.samples);
+  set_joint_velocities(list.samples);
+  return list;
+}
+
+SampleList read_sample_files(const std::vector<std::string>& files) {
+  SampleList list;
+  {
+    const py::gil_scoped_release others_may_run;
+    for (const std::string& file : files) {
+      Recording read = read_recording(file, list.diagnostics);
+      std::move(read.samples.begin(), read.samples.end(), std::back_inserter(list.samples));
+      if (list.urdf.empty()) list.urdf = std::move(read.urdf);
+      list.files.push_back(file);
+    }
+  }
+  list.diagnostics.throw_if_errors();
+  return list;
+}
+
+Numbers positions_of(const SampleList& list, const std::vector<std::string>& joints) {
+  Numbers positions(std::vector<py::ssize_t>{static_cast<py::ssize_t>(list.samples.size()),
+                                             static_cast<py::ssize_t>(joints.size())});
+  double* out = positions.mutable_data();
+  for (const Sample& sample : list.samples) {
+    for (const std::string& joint : joints) *out++ = sample.position(joint).value_or(kMissing);
+  }
+  return positions;
+}
+
+std::vector<std::string> joints_of_samples(const SampleList& list) {
+  std::vector<std::string> joints;
+  std::set<std::string> known;
+  for (const Sample& sample : list.samples) {
+    for (const std::string& joint : sample.joint_names) {
+      if (known.insert(joint).second) joints.push_back(joint);
+    }
+  }
+  return joints;
+}
+
+/// The features of a sensor, (n, k, 3), by place, and their ids (n, k), -1 without; NaN where there are fewer.
+py::tuple features_of(const SampleList& list, const std::string& sensor) {
+  std::size_t most = 0;
+  for (const Sample& sample : list.samples) {
+    if (const Observation* seen = sample.observation(sensor))
+      most = std::max(most, seen->features.size());
+  }
+  const auto rows = static_cast<py::ssize_t>(list.samples.size()),
+             width = static_cast<py::ssize_t>(most);
+  Numbers points(std::vector<py::ssize_t>{rows, width, 3});
+  py::array_t<int> ids(std::vector<py::ssize_t>{rows, width});
+  std::fill_n(points.mutable_data(), points.size(), kMissing);
+  std::fill_n(ids.mutable_data(), ids.size(), -1);
+  for (std::size_t i = 0; i < list.samples.size(); ++i) {
+    const Observation* seen = list.samples[i].observation(sensor);
+    for (std::size_t k = 0; seen != nullptr && k < seen->features.size(); ++k) {
+      const Feature& feature = seen->features[k];
+      for (std::size_t c = 0; c < 3; ++c) {
+        points.mutable_data()[3 * (i * most + k) + c] = feature.point(static_cast<Eigen::Index>(c));
+      }
+      ids.mutable_data()[i * most + k] = feature.id.value_or(-1);
+    }
+  }
+  return py::make_tuple(std::move(points), std::move(ids));
+}
+
+std::vector<std::string> sensors_of(const SampleList& list) {
+  std::set<std::string> sensors;
+  for (const Sample& sample : list.samples) {
+    for (const Observation& seen : sample.observations) sensors.insert(seen.sensor);
+  }
+  return {sensors.begin(), sensors.end()};
+}
+
+/// Gives a sensor the intrinsics of a camera.
+/// @param numbers  fx fy cx cy, pixels; then distortion as its model orders it
+void set_intrinsics(SampleList& list, const std::string& sensor, int width, int height,
+                    const std::vector<double>& numbers, const std::string& model) {
+  CameraInfo camera;
+  camera.width = width;
+  camera.height = height;
+  camera.distortion_model = model;
+  camera.d.assign(numbers.begin() + 4, numbers.end());
+  camera.k = {numbers[0], 0.0, numbers[2], 0.0, numbers[1], numbers[3], 0.0, 0.0, 1.0};
+  camera.r = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  camera.p = {numbers[0], 0.0, numbers[2], 0.0, 0.0, numbers[1],
+              numbers[3], 0.0, 0.0,        0.0, 1.0, 0.0};
+  for (Sample& sample : list.samples) {
+    for (Observation& seen : sample.observations) {
+      if (seen.sensor == sensor) seen.camera = camera;
+    }
+  }
+}
+
+void save_samples(const SampleList& list, const std::string& path) {
+  const py::gil_scoped_release others_may_run;
+  if (output_encoding(path)) {
+    write_recording(path, list.samples, list.urdf);
+    return;
+  }
+  std::ostringstream text;
+  write_samples(text, list.samples);
+  write_text_file(path, text.str());
+}
+
+}  // namespace
+
+void bind_samples(py::module_& module) {
+  py::class_<SensorArray>(module, "SensorArray")
+      .def(py::init(
+               [](std::string sensor, std::string frame, Numbers features, std::vector<int> ids) {
+                 return SensorArray{std::move(sensor), std::move(frame), std::move(features),
+                                    std::move(ids)};
+               }),
+           py::arg("sensor"), py::arg("frame"), py::arg("features"), py::arg("ids"));
+  py::class_<SampleList>(module, "Samples")
+      .def(py::init(&samples_of_arrays), py::arg("joints"), py::arg("positions"),
+           py::arg("sensors"), py::arg("conditions"), py::arg("stamps"), py::arg("name"))
+      .def("__len__", [](const SampleList& list) { return list.samples.size(); })
+      .def("joints", &joints_of_samples)
+      .def("sensors", &sensors_of)
+      .def("positions", &positions_of, py::arg("joints"))
+      .def("features", &features_of, py::arg("sensor"))
+      .def("sources",
+           [](const SampleList& list) {
+             std::vector<std::string> sources;
+             for (const Sample& sample : list.samples) sources.push_back(sample.source);
+             return sources;
+           })
+      .def("take",
+           [](const SampleList& list, const std::vector<std::size_t>& numbers) {
+             SampleList some{.urdf = list.urdf};
+             for (const std::size_t i : numbers) some.samples.push_back(list.samples.at(i));
+             return some;
+           })
+      .def("append",
+           [](SampleList& list, const SampleList& more) {
+             list.samples.insert(list.samples.end(), more.samples.begin(), more.samples.end());
+           })
+      .def("set_camera_file",
+           [](SampleList& list, const std::string& argument) {
+             Diagnostics found;
+             set_camera(list.samples, argument, found);
+             found.throw_if_errors();
+           })
+      .def("set_intrinsics", &set_intrinsics)
+      .def("save", &save_samples, py::arg("path"))
+      .def_readonly("urdf", &SampleList::urdf)
+      .def_property_readonly("warnings",
+                             [](const SampleList& list) { return list.diagnostics.warnings; });
+  module.def("read_samples", &read_sample_files, py::arg("files"));
+}
+
+}  // namespace kinecal::python
