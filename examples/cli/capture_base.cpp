@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
 #include <iostream>
 #include <string>
 #include <string_view>
@@ -75,8 +76,10 @@ bool enter_is_pressed() {
 void follow(RosBase& base, const CaptureOptions& options) {
   using Steady = std::chrono::steady_clock;
   const bool waits = on_a_terminal();
-  if (!options.seconds)
+  if (!options.seconds) {
     say("recording: drive the base; {} ends it\n", waits ? "Enter or Ctrl-C" : "Ctrl-C");
+    std::fflush(stdout);
+  }
   const auto began = Steady::now();
   while (!Interruption::is_asked()) {
     base.record(std::chrono::milliseconds(50));

@@ -81,10 +81,11 @@ void check_gains(const StepConfig& step, const BlockConfig& block, std::size_t m
   if (!field_is_free || gains.size() <= most) return;
   diagnostics.error(
       block.place,
-      fmt::format(
-          "{} and all of {} are free: scaling them together changes no residual; hold '{}', or "
-          "hold '{}' at the local strength of the field (World Magnetic Model)",
-          block.name + "_field", fmt::join(gains, ", "), gains.back(), block.name + "_field"));
+      fmt::format("{} and all of {} are free, but shrinking them together lowers every residual; "
+                  "hold '{}', "
+                  "or hold '{}' at the local strength of the field (World Magnetic Model)",
+                  block.name + "_field", fmt::join(gains, ", "), gains.back(),
+                  block.name + "_field"));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include "kinecal/errors/base_motion.hpp"
 #include "kinecal/errors/magnetic_field.hpp"
+#include "kinecal/errors/prior.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/report/parameters_text.ipp"
 #include "kinecal/report/text.hpp"
@@ -333,7 +334,8 @@ namespace {
     return std::all_of(calibration.steps.begin(), calibration.steps.end(),
                        [&](const CalibrationStep& step) {
                          for (int t = 0; t < step.problem->num_terms(); ++t) {
-                           if (!is_type(step.problem->term(t).options.type)) return false;
+                           const std::string& type = step.problem->term(t).options.type;
+                           if (type != Prior::kType && !is_type(type)) return false;
                          }
                          return true;
                        });
