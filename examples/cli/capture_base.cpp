@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
 #include <iostream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -70,11 +72,14 @@ bool enter_is_pressed() {
   return static_cast<bool>(std::getline(std::cin, line));
 }
 
-/// Records until Enter, an interruption, or the time of --seconds.
+/// Records until Enter, Ctrl-C, or the time of --seconds.  Without --seconds, Ctrl-C is the normal end.
 void follow(RosBase& base, const CaptureOptions& options) {
   using Steady = std::chrono::steady_clock;
   const bool waits = on_a_terminal();
-  if (!options.seconds) say("recording: drive the base; {} ends it\n", waits ? "Enter" : "Ctrl-C");
+  if (!options.seconds) {
+    say("recording: drive the base; {} ends it\n", waits ? "Enter or Ctrl-C" : "Ctrl-C");
+    std::fflush(stdout);
+  }
   const auto began = Steady::now();
   while (!Interruption::is_asked()) {
     base.record(std::chrono::milliseconds(50));
@@ -104,6 +109,25 @@ std::string run(RosBase& base, const CaptureOptions& options) {
   return why == "interrupted" ? "" : why;
 }
 
+/// @throws InputError  if an option is given that a base does not have
+void refuse_options_of_arms(const CaptureOptions& options) {
+  for (const auto& [option, is_given] :
+       {std::pair("--poses", !options.poses.empty()), std::pair("--manual", options.manual),
+        std::pair("--resume", options.resume), std::pair("--depth", !options.depth.empty()),
+        std::pair("--joint-states", !options.joints.empty()),
+        std::pair("--mesh-path", !options.mesh_paths.empty()),
+        std::pair("--calibrate", !options.calibrate.empty()),
+        std::pair("--until", !options.until.empty()),
+        std::pair("--result", !options.result.empty()),
+        std::pair("--report", !options.report.empty()),
+        std::pair("--contact-sheet", !options.sheet.empty())}) {
+    if (!is_given) continue;
+    throw InputError(
+        fmt::format("{} is of an arm, and {} has an error block of a mobile base; leave {} out",
+                    option, options.config, option));
+  }
+}
+
 }  // namespace
 
 bool is_base_config(const std::string& path) {
@@ -123,6 +147,7 @@ bool is_base_config(const std::string& path) {
 }
 
 int capture_base(const CaptureOptions& options) {
+  refuse_options_of_arms(options);
   const auto encoding = output_encoding(options.output);
   if (!encoding) {
     throw InputError("--output: a drive is recorded in a bag: " + options.output +
@@ -156,7 +181,7 @@ int capture_base(const CaptureOptions& options) {
     say("{}: {} of {}\n", options.output, counted(static_cast<std::size_t>(count), "message"),
         topic);
   }
-  const bool is_interrupted = Interruption::is_asked();
+  const bool is_interrupted = Interruption::is_asked() && (options.drive || options.seconds);
   if (is_interrupted || !lost.empty()) {
     say(stderr, "error: {}\n", is_interrupted ? "interrupted" : lost);
     return is_interrupted ? kInterrupted : kBadInput;

@@ -66,18 +66,24 @@ std::string ask_links(const Robot& robot, const Question& question) {
   });
 }
 
+/// That a target goes into no configuration with others, and what to do.
+std::string alone_text(std::string_view target) {
+  return fmt::format(
+      "{0} does not go into one configuration with others; call init for {0} "
+      "alone, with another --output",
+      target);
+}
+
 /// Why a word is not a target of this robot; empty if it is.
 std::string check_target(const Robot& robot, const InitOptions& options, const std::string& word) {
-  if (word == kBaseTarget) {
-    return "base is alone: it does not go into one configuration with other targets";
-  }
+  if (word == kBaseTarget || word == kMagnetometerTarget) return alone_text(word);
   if (const auto target = init_target(word)) {
     return why_no_target(robot, target->target, first_of(robot, options.arm),
                          first_of(robot, options.camera));
   }
   std::vector<std::string_view> words;
   for (const InitTargetWord& known : kInitTargets) words.push_back(known.word);
-  words.push_back(kBaseTarget);
+  words.insert(words.end(), {kBaseTarget, kMagnetometerTarget});
   return fmt::format("'{}' is not a target{}; choose one of {}", word, did_you_mean(word, words),
                      init_target_words());
 }
@@ -647,22 +653,69 @@ std::vector<std::string> stands_of(const std::string& urdf_text, const std::stri
   return stands;
 }
 
+/// An option and whether it is given.
+using GivenOption = std::pair<const char*, bool>;
+
+/// The options of a mobile base.
+std::vector<GivenOption> base_options(const InitOptions& given) {
+  return {{"--drive", !given.drive.empty()},
+          {"--seen", !given.seen.empty()},
+          {"--sensor", !given.sensor.empty()},
+          {"--wheel-radius", given.wheel_radius.has_value()},
+          {"--track-width", given.track_width.has_value()},
+          {"--wheelbase", given.wheelbase.has_value()},
+          {"--gyro-scale", given.gyro_scale.has_value()}};
+}
+
+/// The options of arms and cameras, which neither a base nor a magnetometer has.
+std::vector<GivenOption> arm_options(const InitOptions& given) {
+  return {{"--arm", !given.arm.empty()},
+          {"--camera", !given.camera.empty()},
+          {"--cameras", !given.cameras.empty()},
+          {"--camera-type", !given.camera_type.empty()},
+          {"--robot-camera-name", !given.camera_name.empty()},
+          {"--target-frame", !given.target_frame.empty()},
+          {"--tracker-frame", !given.tracker_frame.empty()},
+          {"--length", given.length.has_value()},
+          {"--touched-link", !given.touched_link.empty()},
+          {"--touched-at", !given.touched_at.empty()},
+          {"--capture", !given.capture.empty()},
+          {"--poses", !given.poses.empty()},
+          {"--form", !given.form.empty()},
+          {"--inverse", given.inverse},
+          {"--corners", !given.corners.empty()},
+          {"--target-points", !given.target_points.empty()},
+          {"--stands", !given.stands.empty()}};
+}
+
+/// The target of --target that goes into no configuration with others; empty if they all are of an arm.
+/// @throws InputError  if there are others, or options that it does not have
+std::string_view lone_target(const InitOptions& given) {
+  const std::vector<std::string>& words = given.targets;
+  for (const std::string_view target : {kBaseTarget, kMagnetometerTarget}) {
+    if (std::find(words.begin(), words.end(), target) == words.end()) continue;
+    if (words.size() > 1) throw InputError("--target: " + alone_text(target));
+    std::vector<GivenOption> foreign = arm_options(given);
+    if (target != kBaseTarget) {
+      const std::vector<GivenOption> of_base = base_options(given);
+      foreign.insert(foreign.end(), of_base.begin(), of_base.end());
+    }
+    for (const auto& [option, is_given] : foreign) {
+      if (is_given)
+        throw InputError(fmt::format("{} does not go with --target {}", option, target));
+    }
+    return target;
+  }
+  return {};
+}
+
 }  // namespace
 
 int init(const InitOptions& given) {
-  if (given.targets == std::vector<std::string>{"magnetometer"}) return init_magnetometer(given);
-  const auto is_base = [](const InitOptions& options) {
-    const std::vector<std::string>& words = options.targets;
-    return std::find(words.begin(), words.end(), kBaseTarget) != words.end();
-  };
-  if (is_base(given)) return init_base(given);
-  for (const auto& [option, is_given] :
-       {std::pair("--drive", !given.drive.empty()), std::pair("--seen", !given.seen.empty()),
-        std::pair("--sensor", !given.sensor.empty()),
-        std::pair("--wheel-radius", given.wheel_radius.has_value()),
-        std::pair("--track-width", given.track_width.has_value()),
-        std::pair("--wheelbase", given.wheelbase.has_value()),
-        std::pair("--gyro-scale", given.gyro_scale.has_value())}) {
+  const std::string_view lone = lone_target(given);
+  if (lone == kMagnetometerTarget) return init_magnetometer(given);
+  if (lone == kBaseTarget) return init_base(given);
+  for (const auto& [option, is_given] : base_options(given)) {
     if (is_given) throw InputError(fmt::format("{} goes with --target base", option));
   }
   if (!given.poses.empty()) return init_hand_eye(given);
@@ -694,7 +747,7 @@ int init(const InitOptions& given) {
   if (options.from.empty() && options.targets.empty()) {
     check_given(robot, options);
     ask_targets(robot, options);
-    if (is_base(options)) return init_base(options);
+    if (lone_target(options) == kBaseTarget) return init_base(options);
   }
   const Configured made = configure(robot, stands_of(urdf_text, options.urdf), before, options);
   check();  // the file may have appeared meanwhile

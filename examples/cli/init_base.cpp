@@ -23,9 +23,9 @@
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/tools/init/initial_base.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
-#include "kinecal/tools/init/proposed_columns.hpp"
 #include "output_file.hpp"
 #include "question.hpp"
+#include "table_samples.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {
@@ -46,24 +46,6 @@ std::string beside(const InitOptions& options, const char* name) {
   return (std::filesystem::path(options.output).parent_path() / name).string();
 }
 
-/// The samples of a table, whose columns.yaml is written unless it is there.
-std::vector<Sample> table_samples(const InitOptions& options, const std::string& columns) {
-  const std::string& table = options.from.front();
-  const bool is_there = std::filesystem::exists(columns);
-  const bool is_ours =
-      is_there && detail::read_text_file(columns).starts_with(kProposedColumnsMark);
-  if (is_there && (!options.force || !is_ours)) {
-    say("{} is there and is used\n", columns);
-  } else {
-    write_output(columns, base_columns(detail::read_text_file(table), table));
-    say("wrote {}\n  what each column of {} means, by its name: look at it\n", columns, table);
-  }
-  Diagnostics diagnostics;
-  std::vector<Sample> samples = read_csv_samples(table, columns, diagnostics);
-  print_or_throw(diagnostics);
-  return samples;
-}
-
 BaseInput read(const InitOptions& options) {
   BaseInput in;
   if (options.from.size() > 1) throw InputError("--from: a base takes one recording");
@@ -73,7 +55,7 @@ BaseInput read(const InitOptions& options) {
     const std::string& from = options.from.front();
     if (is_csv_table(from)) {
       in.columns = beside(options, "columns.yaml");
-      in.drive.samples = table_samples(options, in.columns);
+      in.drive.samples = table_samples(from, in.columns, options.force, base_columns);
     } else if (recording_format(from) == RecordingFormat::yaml) {
       in.drive.samples = read_recordings(options.from, diagnostics).samples;
     } else {
@@ -228,9 +210,6 @@ BaseAnswers answer(const InitOptions& options, const BaseInput& in) {
 }  // namespace
 
 int init_base(const InitOptions& options) {
-  if (options.targets.size() > 1) {
-    throw InputError("--target: base does not go into one configuration with others");
-  }
   if (options.urdfs.size() > 1) throw InputError("--target: base is of one robot: one --urdf");
   std::vector<std::string> inputs = options.urdfs;
   inputs.insert(inputs.end(), options.from.begin(), options.from.end());

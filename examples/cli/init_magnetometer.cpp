@@ -8,11 +8,11 @@
 #include "input.hpp"
 #include "kinecal/files/csv/read_csv_samples.hpp"
 #include "kinecal/files/results/file_set.hpp"
-#include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/tools/init/magnetometer_config.hpp"
 #include "kinecal/tools/init/robot_parts.hpp"
 #include "output_file.hpp"
+#include "table_samples.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {
@@ -41,19 +41,15 @@ int init_magnetometer(const InitOptions& options) {
   check_output(options.output, inputs, options.force);
   if (is_alone) check_output(urdf, inputs, options.force);
   const std::string& first = options.from.front();
-  const std::string extension = std::filesystem::path(first).extension().string();
-  const bool is_table = extension == ".csv" || extension == ".tsv" || extension == ".txt";
+  const bool is_table = is_csv_table(first);
+  if (is_table && options.from.size() > 1) {
+    throw InputError("--from: a magnetometer takes one table, or any number of recordings");
+  }
   const std::string columns = beside("columns.yaml");
   Diagnostics diagnostics;
   std::vector<Sample> samples;
   if (is_table) {
-    if (std::filesystem::exists(columns) && !options.force) {
-      say("{} is there and is used\n", columns);
-    } else {
-      write_output(columns, magnetometer_columns(detail::read_text_file(first), first));
-      say("wrote {}: microtesla, is that so?\n", columns);
-    }
-    samples = read_csv_samples(first, columns, diagnostics);
+    samples = table_samples(first, columns, options.force, magnetometer_columns);
   } else {
     samples = read_recordings(options.from, diagnostics).samples;
   }

@@ -54,7 +54,7 @@ std::vector<std::string> target_words() {
   for (const kinecal::InitTargetWord& target : kinecal::kInitTargets)
     words.emplace_back(target.word);
   words.emplace_back(kinecal::kBaseTarget);
-  words.emplace_back("magnetometer");
+  words.emplace_back(kinecal::kMagnetometerTarget);
   return words;
 }
 
@@ -476,15 +476,21 @@ void add_init(CLI::App& command, InitOptions& options) {
       "link of the laser or of what is tracked: its place on the base is that of the URDF or "
       "tf; default: the frame of the scans",
       "LINK");
-  add_of_base("--wheel-radius", options.wheel_radius,
-              "nominal; metres a unit of the positions, such as a tick; default: of the URDF",
-              "METRES");
+  add_of_base(
+      "--wheel-radius", options.wheel_radius,
+      "nominal, metres; if the table counts ticks, metres a tick; default: that of the URDF",
+      "METRES");
   add_of_base("--track-width", options.track_width,
-              "nominal; default: of the URDF.  With odometry that of the driver, for 'install'",
+              "nominal distance of left and right wheels, metres; default: that of the URDF.  With "
+              "--drive odometry: what the driver has, which 'install' corrects; default: not known",
               "METRES");
-  add_of_base("--wheelbase", options.wheelbase, "nominal; default: of the URDF", "METRES");
-  add_of_base("--gyro-scale", options.gyro_scale,
-              "of the gyroscope's driver, for 'install'; default: not known", "FACTOR");
+  add_of_base("--wheelbase", options.wheelbase,
+              "nominal distance of the axles, metres; default: that of the URDF", "METRES");
+  add_of_base(
+      "--gyro-scale", options.gyro_scale,
+      "scale of the gyroscope in its driver, rad/s a count, which 'install' corrects; default: "
+      "not known",
+      "FACTOR");
   command
       .add_option("--base", options.base,
                   "link in which measurements are compared; default: the root of the URDF")
@@ -586,9 +592,11 @@ void add_study(CLI::App& command, StudyOptions& options) {
                    "compare with a calibration that also estimates the target pose of each sample "
                    "(as on the PR2)");
   command
-      .add_option("--limit", options.limit,
-                  "mean re-projection error beyond which a calibration failed, metres or pixels; "
-                  "default: 3 mm as in the paper, or 1 pixel")
+      .add_option(
+          "--limit", options.limit,
+          "mean re-projection error above which a calibration counts as failed, greater than 0, "
+          "metres (clouds) or pixels (photographs); "
+          "default: 3 mm as in the paper, or 1 pixel")
       ->check(CLI::PositiveNumber);
   command.add_option("--threads", options.threads, "number of threads, default: one per core")
       ->check(CLI::Range(1, 1024));
@@ -792,8 +800,10 @@ void add_detect(CLI::App& command, DetectOptions& options) {
 template <class Options>
 void add_robot(CLI::App& command, Options& options) {
   command
-      .add_option("config", options.config,
-                  "chains that move and finders that look: capture.yaml of robot_calibration")
+      .add_option(
+          "config", options.config,
+          "chains that move and finders that look: capture.yaml of robot_calibration; of a mobile "
+          "base, the configuration of its calibration")
       ->required()
       ->type_name("FILE");
   command
@@ -852,24 +862,29 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
   command.add_option("--velocity", options.velocity, "speed, as a fraction of normal")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
-  command.add_flag(
+  CLI::Option* drive = command.add_flag(
       "--drive", options.drive,
       "with the configuration of a mobile base: command it to turn in place, and ahead and "
       "back in front of a wall (1.5 rad/s and 0.2 m/s at most, times --velocity); "
       "without it, you drive");
-  command.add_option("--distance", options.distance, "of these runs ahead, default: 1")
+  command
+      .add_option("--distance", options.distance,
+                  "length of each run ahead towards the wall, metres; default: 1")
+      ->needs(drive)
       ->type_name("METRES");
   command
-      .add_option("--seconds", options.seconds,
-                  "how long a base is recorded that you drive; default: until Enter")
+      .add_option(
+          "--seconds", options.seconds,
+          "record a base that you drive for so many seconds; default: until Enter or Ctrl-C")
       ->check(CLI::PositiveNumber)
-      ->excludes("--drive")
+      ->excludes(drive)
       ->type_name("S");
   command
       .add_option(
           "--topic", options.topics,
-          "a topic of a base: odom=, scan=, commands= (default: /odom, /base_scan or /scan, "
-          "/cmd_vel), imu=, wheels= or pose=")
+          "a topic of a base, for each KEY: odom (default: /odom), scan (/base_scan, /scan), "
+          "commands (/cmd_vel), imu (/imu, /imu1/imu, /imu/data), wheels (/joint_states), or pose "
+          "(a tracker's)")
       ->allow_extra_args(false)
       ->type_name("KEY=NAME");
   command.add_flag("--resume", options.resume,
@@ -1083,8 +1098,8 @@ void add_watch(CLI::App& command, WatchOptions& options) {
   command
       .add_option(
           "--limit", options.limit,
-          "change of the gripper's pose that matters, in mm, or with a unit: 0.5mm; default: "
-          "three times the +- of the result")
+          "change of the gripper's pose that matters, greater than 0, in mm, or with a unit: "
+          "0.5mm; default: three times the +- of the result")
       ->transform(CLI::AsNumberWithUnit(
           std::map<std::string, double>{{"mm", 1.0}, {"cm", 10.0}, {"m", 1000.0}, {"in", 25.4}},
           CLI::AsNumberWithUnit::CASE_SENSITIVE, "LENGTH"))
@@ -1345,8 +1360,8 @@ void add_commands(Commands& commands, const kinecal::ShellCommand& line) {
       "detect", "find boards and tags in photographs and recordings, and write samples", add_detect,
       detect);
   commands.add<SimulateOptions>("simulate",
-                                "render photographs, clouds or masks of a simulated robot that "
-                                "differs from its URDF by known errors",
+                                "render photographs, clouds or masks of a simulated robot, or "
+                                "record the drive of a mobile base, with known errors",
                                 add_simulate, simulate);
   commands.add<StudyOptions>(
       "study", "calibrate simulated robots many times: how well it repeats, with how many poses",

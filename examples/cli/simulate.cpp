@@ -1,10 +1,12 @@
-// kinecal simulate: photographs of a simulated robot, a table of its joint positions, and the truth.
+// kinecal simulate: photographs of a simulated robot and a table of its joint positions, or the drive of a mobile
+// base; and the truth.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "commands.hpp"
 #include "input.hpp"
@@ -124,7 +126,15 @@ std::string table_of(const std::vector<Sample>& samples) {
 }
 
 /// A drive of a base on two wheels, as a table.
+/// @throws InputError  if an option of photographs is given
 int simulate_drive(const SimulateOptions& options) {
+  for (const auto& [option, is_given] : {std::pair("--poses", options.poses > 0),
+                                         std::pair("--mesh-path", !options.mesh_paths.empty())}) {
+    if (is_given) {
+      throw InputError(fmt::format(
+          "{} does not go with --target base, which simulates a drive without images", option));
+    }
+  }
   const std::filesystem::path folder = options.output;
   const std::string urdf = read_urdf_text(options.urdf);
   const Robot robot = parse_urdf(urdf, options.urdf);

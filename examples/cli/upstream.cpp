@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <utility>
@@ -46,22 +47,25 @@ using Known = std::map<std::string, Follows>;
 struct Program {
   std::string_view name;
   std::string_view usage;  ///< its arguments
-  Known options;           ///< beside kCommon
+  Known options;           ///< all that it takes
   Words parameters;        ///< that it has in ROS and kinecal uses or leaves out
   std::size_t most_words;  ///< beside options
 };
 
-/// Words of kinecal for each of them.
-const Known& common_options() {
-  static const Known all = {{"--launch", Follows::a_value}, {"--robot", Follows::a_value},
-                            {"--urdf", Follows::a_value},   {"--output", Follows::a_value},
-                            {"--force", Follows::nothing},  {"--show", Follows::nothing},
-                            {"--help", Follows::nothing},   {"-h", Follows::nothing}};
-  return all;
+/// The options of a program: its own, those of kinecal that it uses, and those that all have.
+Known with_common(Known own, std::initializer_list<const char*> of_kinecal) {
+  for (const char* option : of_kinecal) {
+    const bool is_flag = std::string_view(option) == "--force";
+    own.emplace(option, is_flag ? Follows::nothing : Follows::a_value);
+  }
+  for (const char* option : {"--show", "--help", "-h"}) own.emplace(option, Follows::nothing);
+  return own;
 }
 
 const std::vector<Program>& programs() {
-  const Known from_bag = {{"--from-bag", Follows::a_value}};
+  const Known recorded = with_common({{"--from-bag", Follows::a_value}},
+                                     {"--launch", "--urdf", "--output", "--force"});
+  const Known of_base_programs = with_common(recorded, {"--robot"});
   const Words of_base = {"verbose",
                          "min_angle",
                          "max_angle",
@@ -76,32 +80,38 @@ const std::vector<Program>& programs() {
   static const std::vector<Program> all = {
       {"calibrate",
        "[POSES | --manual | --from-bag [BAG]]",
-       {{"--manual", Follows::nothing}, {"--from-bag", Follows::maybe_a_value}},
+       with_common({{"--manual", Follows::nothing}, {"--from-bag", Follows::maybe_a_value}},
+                   {"--launch", "--robot", "--urdf", "--output", "--force"}),
        {"verbose", "velocity_factor", "output_directory", "settle_duration_secs"},
        1},
-      {"capture_poses", "[FILE] [--config CAPTURE_YAML]", {{"--config", Follows::a_value}}, {}, 1},
-      {"viz", "BAG [OFFSETS]", {}, {"verbose"}, 2},
-      {"to_rpy", "A B C", {}, {}, 3},
-      {"base_calibration", "[--from-bag BAG]", from_bag, of_base, 0},
-      {"base_calibration_node", "[--from-bag BAG]", from_bag, of_base, 0},
-      {"calibrate_base", "[--from-bag BAG]", from_bag, of_base, 0},
+      {"capture_poses",
+       "[FILE] [--config CAPTURE_YAML]",
+       with_common({{"--config", Follows::a_value}}, {"--launch", "--robot", "--urdf", "--force"}),
+       {},
+       1},
+      {"viz", "BAG [OFFSETS]", with_common({}, {"--launch", "--urdf", "--output"}), {"verbose"}, 2},
+      {"to_rpy", "A B C", with_common({}, {}), {}, 3},
+      {"base_calibration", "[--from-bag BAG]", of_base_programs, of_base, 0},
+      {"base_calibration_node", "[--from-bag BAG]", of_base_programs, of_base, 0},
+      {"calibrate_base", "[--from-bag BAG]", of_base_programs, of_base, 0},
       {"magnetometer_calibration",
        "[--from-bag BAG]",
-       from_bag,
+       recorded,
        {"bag_file_name", "rotation_manual", "rotation_velocity", "rotation_duration", "soft_iron"},
        0},
       {"calibrate_robot",
        "[--arm] [--base] [--install] [--reset] [--restore] [--date] [--directory DIR] "
        "[--from-bag BAG] [--to DIR]",
-       {{"--arm", Follows::nothing},
-        {"--base", Follows::nothing},
-        {"--install", Follows::nothing},
-        {"--reset", Follows::nothing},
-        {"--restore", Follows::nothing},
-        {"--date", Follows::nothing},
-        {"--directory", Follows::a_value},
-        {"--from-bag", Follows::a_value},
-        {"--to", Follows::a_value}},
+       with_common({{"--arm", Follows::nothing},
+                    {"--base", Follows::nothing},
+                    {"--install", Follows::nothing},
+                    {"--reset", Follows::nothing},
+                    {"--restore", Follows::nothing},
+                    {"--date", Follows::nothing},
+                    {"--directory", Follows::a_value},
+                    {"--from-bag", Follows::a_value},
+                    {"--to", Follows::a_value}},
+                   {"--launch", "--robot", "--urdf", "--force"}),
        {},
        0}};
   return all;
@@ -173,7 +183,11 @@ void set_parameter(Call& call, const std::string& name, const std::string& value
   const std::string own = name.substr(name.find(':') + 1);
   const Words& known = call.program->parameters;
   if (std::find(known.begin(), known.end(), own) == known.end()) {
-    refuse_word(call, own, "a parameter that can be given alone", known);
+    if (known.empty()) refuse(call, "has no parameters: leave out " + in_quotes(own));
+    refuse_word(call, own,
+                "a parameter that can be set on the command line; those of a capture and of a "
+                "calibration come from --params-file",
+                known);
   }
   call.parameters[own] = value;
 }
@@ -251,8 +265,7 @@ class Parser {
       return;
     }
     const std::string name = word.substr(0, word.find('='));
-    Known known = common_options();
-    known.insert(call_.program->options.begin(), call_.program->options.end());
+    const Known& known = call_.program->options;
     const auto found = known.find(name);
     if (found == known.end()) {
       Words names;
@@ -615,6 +628,12 @@ UpstreamCall magnetometer_call(Call call, const UpstreamPlace& place) {
       (std::filesystem::path(call.output()) / ("magnetometer_" + place.date)).string();
   UpstreamCall done = recording_call(call, {"--target", "magnetometer"}, bag, folder,
                                      "magnetometer.urdf", call.output());
+  if (call.is_set("soft_iron")) {
+    done.notes.push_back(
+        "soft_iron: has no effect: soft iron is calibrated as far as the readings show it, of a "
+        "turn "
+        "about one axis in its plane only; for all of it, turn the sensor all ways by hand");
+  }
   if (!call.has("--from-bag") && (turns || call.is_set("rotation_manual"))) {
     done.notes.push_back("the robot is not turned: " + bag +
                          " is read, a recording of /imu/mag while somebody turns it");
@@ -683,11 +702,20 @@ UpstreamCall calibrate_robot_call(const Call& call, const UpstreamPlace& place) 
 }
 
 void print_usage(const Program& program) {
-  say("usage: {} {}\n"
-      "       [--launch FILE.launch [NAME:=VALUE ...]] [--ros-args --params-file FILE ...]\n"
-      "       [--robot ADDRESS] [--urdf FILE] [--output DIR] [--force]\n"
-      "       [--show: print the commands of kinecal instead of running them]\n",
-      program.name, program.usage);
+  const auto if_known = [&](const char* option, const char* text) {
+    return program.options.contains(option) ? std::string(" ") + text : "";
+  };
+  const std::string of_ros =
+      if_known("--launch", "[--launch FILE.launch [NAME:=VALUE ...]]") +
+      (program.name == "to_rpy" ? "" : " [--ros-args --params-file FILE ...]");
+  const std::string of_kinecal =
+      if_known("--robot", "[--robot ADDRESS]") + if_known("--urdf", "[--urdf FILE]") +
+      if_known("--output", "[--output DIR]") + if_known("--force", "[--force]");
+  say("usage: {} {}\n", program.name, program.usage);
+  for (const std::string& line : {of_ros, of_kinecal}) {
+    if (!line.empty()) say("      {}\n", line);
+  }
+  say("       [--show: print the commands of kinecal instead of running them]\n");
 }
 
 }  // namespace
@@ -732,9 +760,37 @@ std::string typed(const Words& line) {
   return command.str();
 }
 
+/// A folder of one's own for a file of parameters, removed at the end unless it is kept.
+class ParameterFolder {
+ public:
+  ParameterFolder() = default;
+  ParameterFolder(const ParameterFolder&) = delete;
+  ParameterFolder& operator=(const ParameterFolder&) = delete;
+  ~ParameterFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  }
+
+  /// A file in it; the folder is made first.
+  /// @throws InputError  if it cannot be made
+  [[nodiscard]] std::string file(const std::string& name) {
+    std::string path = (std::filesystem::temp_directory_path() / "kinecal_XXXXXX").string();
+    if (::mkdtemp(path.data()) == nullptr) {
+      throw InputError(path + ": a folder for the parameters cannot be made there");
+    }
+    path_ = path;
+    return (std::filesystem::path(path_) / name).string();
+  }
+  /// Leaves it there, for commands that are printed and not run.
+  void keep() { path_.clear(); }
+
+ private:
+  std::string path_;
+};
+
 /// Adds what roslaunch has put on the parameter server of ROS 1 for the node that it starts.
 /// @throws InputError  if it cannot be had
-void add_parameter_server(Words& arguments, const std::string& date) {
+void add_parameter_server(Words& arguments, ParameterFolder& folder) {
   std::string node, space;
   for (const std::string& word : arguments) {
     if (word == "--launch" || word == "--ros-args") return;
@@ -746,7 +802,7 @@ void add_parameter_server(Words& arguments, const std::string& date) {
   while (space.ends_with('/')) space.pop_back();
   const std::string name =
       (space.starts_with('/') || space.empty() ? space : "/" + space) + "/" + node;
-  const std::string file = "/tmp/" + node + "_" + date + ".yaml";
+  const std::string file = folder.file(node + ".yaml");
   const std::string command = ShellCommand{"rosparam", "dump", file, name}.str();
   if (std::system((command + " 1>&2").c_str()) != 0) {
     throw InputError("'" + command + "' fails, so the parameters of node '" + name +
@@ -789,15 +845,17 @@ int run_as_upstream(const std::string& name, std::vector<std::string> arguments)
     return kDone;
   }
   const std::string date = fmt::format("{:%Y_%m_%d_%H_%M_%S}", fmt::localtime(std::time(nullptr)));
+  ParameterFolder folder;
   UpstreamCall call;
   try {
-    if (!program_named(name)->parameters.empty()) add_parameter_server(arguments, date);
+    if (!program_named(name)->parameters.empty()) add_parameter_server(arguments, folder);
     call = translated(name, arguments,
                       {date, environment("ROS_DISTRO"), environment("ROS_VERSION") == "1"});
   } catch (const std::exception& e) {
     say(stderr, "error: {}\n", with_hanging_lines(e.what()));
     return kBadInput;
   }
+  if (call.is_shown) folder.keep();
   for (const std::string& note : call.notes) say(stderr, "note: {}\n", note);
   for (Words& line : call.lines) {
     if (is_of(call.urdf, line)) add(line, "--urdf", call.urdf);

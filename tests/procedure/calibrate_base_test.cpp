@@ -91,6 +91,7 @@ TEST(CalibrateBase, TheFileHasUpstreamsKeys) {
                                "500, rotation_scale: 500}\n"
                                "- {name: imu, type: gyro_to_wall}\n",
                                simulate_base(wrong_base(), turns_and_straight_runs(), 5).samples));
+  EXPECT_EQ(calibrated.driver_file, "base_calibration.yaml");
   calibrated.result.table["base_track_width_scale"].value = 1.02;
   calibrated.result.table["base_rollout_scale"].value = 0.98;
   calibrated.result.table["imu_scale"].value = 0.975;

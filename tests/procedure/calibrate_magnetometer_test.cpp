@@ -133,6 +133,7 @@ TEST(CalibrateMagnetometer, ATurnInPlaceShowsTwoComponents) {
 /// Under upstream's keys, tesla.
 TEST(CalibrateMagnetometer, TheFileHasUpstreamsKeys) {
   CalibratedRobot found = calibrated_from(SimulatedMagnetometer{}.samples(100, 5));
+  EXPECT_EQ(found.driver_file, "magnetometer_calibration.yaml");
   ParameterTable& table = found.result.table;
   for (const auto& [name, value] : {std::pair("bias_x", 12.5),
                                     {"bias_y", -8.0},

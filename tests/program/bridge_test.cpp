@@ -22,6 +22,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// The robot of server.mjs.
 constexpr const char* kSmallUrdf = R"(<robot name="small">
@@ -196,6 +197,30 @@ TEST_P(FetchBehindBridge, IsCapturedWithItsOwnFilesAndCalibratesToTheTruth) {
       urdf(setup.robot, {}, setup.frames), calibrated(setup.robot, result.table, setup.frames);
   EXPECT_GT(led_difference(urdf, truth, samples), 0.03);
   EXPECT_LT(led_difference(calibrated, truth, samples), 0.005);
+}
+
+class BaseBehindBridge : public ProgramTest {};
+
+/// Without --seconds and --drive, Ctrl-C is how a person ends a recording.
+TEST_F(BaseBehindBridge, CtrlCIsTheNormalEndOfARecording) {
+  KINECAL_NEEDS_BRIDGE_SERVER();
+  write("robot.urdf", kSmallUrdf);
+  write("base.yaml",
+        "base_link: base\nmodels: []\nfree_params: [base_track_width_scale]\n"
+        "error_blocks: [{name: base, type: odometry_to_wall}]\n");
+  BridgeServer server(R"({"encoding": "ros1", "base": {}})");
+  const auto interrupted = [&](const std::string& options) {
+    return run("bash -c 'set -m; " + kinecal_program() +
+               " capture base.yaml --urdf robot.urdf -o drive.bag --force --robot " + server.url() +
+               options + " < /dev/null > said & sleep 5; kill -INT $!; wait $!'");
+  };
+  const Outcome ended = interrupted("");
+  EXPECT_EQ(ended.code, 1) << "this base does not move";
+  EXPECT_THAT(ended.err, Not(HasSubstr("interrupted")));
+  EXPECT_THAT(read("said"), AllOf(HasSubstr("Ctrl-C ends it"), HasSubstr("of /odom")));
+  const Outcome early = interrupted(" --seconds 600");
+  EXPECT_EQ(early.code, 130);
+  EXPECT_THAT(early.err, HasSubstr("error: interrupted"));
 }
 
 }  // namespace

@@ -74,6 +74,23 @@ TEST_F(CaptureProgram, SaysWhyItGoesOnThoughTheAskedAccuracyIsCoarse) {
   EXPECT_GE(samples(), 6);
 }
 
+TEST_F(CaptureProgram, RefusesOptionsThatABaseDoesNotHave) {
+  write("base.yaml",
+        "base_link: base_link\nmodels: []\nfree_params: [base_rollout_scale]\n"
+        "error_blocks: [{name: base, type: odometry_to_wall}]\n");
+  const auto said = [&](const std::string& options) {
+    return kinecal("capture base.yaml --robot ws://127.0.0.1:1 -o d.bag " + options).err;
+  };
+  for (const char* option : {"--poses p.yaml", "--manual", "--resume", "--depth /d",
+                             "--joint-states /j", "--calibrate c.yaml", "--contact-sheet s.html"}) {
+    const std::string name = std::string(option).substr(0, std::string(option).find(' '));
+    EXPECT_THAT(said(option), HasSubstr(name + " is of an arm, and base.yaml has an error block"));
+  }
+  EXPECT_THAT(said("--distance 2"), HasSubstr("--distance requires --drive"));
+  EXPECT_THAT(kinecal("simulate " + kCapturedUrdf + " --target base --poses 3 -o drive").err,
+              HasSubstr("--poses does not go with --target base"));
+}
+
 TEST_F(CaptureProgram, ResumesWhereItEnded) {
   simulate(6);
   // The robot is lost after a while: a fault of the scene.

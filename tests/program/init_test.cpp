@@ -6,6 +6,7 @@
 #include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -398,6 +399,40 @@ TEST_F(Init, WritesWhatCalibratesARealRobotAsItStands) {
     const YAML::Node observability = report["observability"][0];
     EXPECT_LE(observability["unobservable"].size(), 1u) << "the tilt, which a prior keeps";
   }
+}
+
+TEST_F(Init, RefusesOptionsThatABaseOrAMagnetometerDoesNotHave) {
+  EXPECT_THAT(init("ur5e", "--target base --arm tool0").err,
+              HasSubstr("--arm does not go with --target base"));
+  EXPECT_THAT(init("ur5e", "--target base --touched-link base_link").err,
+              HasSubstr("--touched-link does not go with --target base"));
+  EXPECT_THAT(init("ur5e", "--target magnetometer --from t.csv --drive odometry").err,
+              HasSubstr("--drive does not go with --target magnetometer"));
+  EXPECT_THAT(init("ur5e", "--target magnetometer,leds").err,
+              HasSubstr("magnetometer does not go into one configuration with others; call init "
+                        "for magnetometer alone"));
+  EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
+}
+
+TEST_F(Init, KeepsTheUsersColumnsOfAMagnetometer) {
+  // A turn about z in a field of 40 microtesla.
+  std::string table = "a,b,c,mx,my,mz\n";
+  for (int i = 0; i < 24; ++i) {
+    const double angle = 0.26 * i;
+    const std::string x = std::to_string(40.0 * std::cos(angle));
+    const std::string y = std::to_string(40.0 * std::sin(angle));
+    table += x + "," + y + ",5," + x + "," + y + ",5\n";
+  }
+  write("turn.csv", table);
+  const std::string call = " init --target magnetometer --from turn.csv --force";
+  ASSERT_EQ(run(test::kinecal_program() + call).code, 0);
+  EXPECT_THAT(read("columns.yaml"), HasSubstr("mag_x: mx"));
+  const std::string own = "separator: comma\nconditions:\n  mag_x: a\n  mag_y: b\n  mag_z: c\n";
+  write("columns.yaml", own);
+  const Outcome again = run(test::kinecal_program() + call);
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(again.out, HasSubstr("columns.yaml is there and is used"));
+  EXPECT_EQ(read("columns.yaml"), own);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::MatchesRegex;
 
@@ -65,8 +66,8 @@ class Upstream : public ProgramTest {
   /// Runs a program of the folder, in the surroundings of a ROS.
   [[nodiscard]] Outcome as(const std::string& call,
                            const std::string& ros = "ROS_VERSION=2") const {
-    return run("env -u ROS_DISTRO ROS_PACKAGE_PATH=" + (folder_ / "ws").string() + " " + ros +
-               " timeout 600 ./" + call + " < /dev/null");
+    return run("env -u ROS_DISTRO -u AMENT_PREFIX_PATH ROS_PACKAGE_PATH=" +
+               (folder_ / "ws").string() + " " + ros + " timeout 600 ./" + call + " < /dev/null");
   }
   /// The commands of kinecal that it runs; a date is DATE, and whether /tmp has results to replace does not matter.
   [[nodiscard]] std::string commands(const std::string& call,
@@ -133,13 +134,22 @@ TEST_F(Upstream, CalibrateTakesTheParameterServerIfRoslaunchHasStartedIt) {
         "#!/bin/sh\n[ \"$1 $3\" = 'dump /fetch/cal' ] && cat capture.yaml all.yaml > \"$2\"\n");
   write("all.yaml", "models: []\n_: _\n");
   fs::permissions(folder_ / "rosparam", fs::perms::owner_all);
-  const std::string ros = "ROS_VERSION=1 PATH=.:$PATH";
-  EXPECT_THAT(commands("calibrate --from-bag b.bag __name:=cal __ns:=/fetch __log:=/dev/null", ros),
-              MatchesRegex("kinecal calibrate --config /tmp/cal_DATE.yaml --samples b.bag .*\n"));
-  EXPECT_THAT(commands("calibrate poses.bag __name:=cal __ns:=/fetch _velocity_factor:=0.3", ros),
-              HasSubstr("kinecal capture /tmp/cal_DATE.yaml --robot ws://localhost:8765 --poses "
-                        "poses.bag --velocity 0.3 --output /tmp/calibration_data_DATE.bag\n"));
+  fs::create_directories(folder_ / "tmp");
+  const std::string ros = "ROS_VERSION=1 TMPDIR=tmp PATH=.:$PATH";
+  EXPECT_THAT(
+      commands("calibrate --from-bag b.bag __name:=cal __ns:=/fetch __log:=/dev/null", ros),
+      MatchesRegex("kinecal calibrate --config tmp/kinecal_[^/]+/cal.yaml --samples b.bag .*\n"));
+  EXPECT_THAT(
+      commands("calibrate poses.bag __name:=cal __ns:=/fetch _velocity_factor:=0.3", ros),
+      ContainsRegex("kinecal capture tmp/kinecal_[^/]+/cal.yaml --robot ws://localhost:8765 "
+                    "--poses poses.bag --velocity 0.3 --output "
+                    "/tmp/calibration_data_DATE.bag\n"));
+  fs::remove_all(folder_ / "tmp");  // where printed commands find their parameters
+  fs::create_directories(folder_ / "tmp");
+  EXPECT_EQ(as("calibrate --from-bag absent.bag --output out __name:=cal __ns:=/fetch", ros).code,
+            1);
   const Outcome other = as("calibrate --from-bag b.bag __name:=other", ros);
+  EXPECT_TRUE(fs::is_empty(folder_ / "tmp")) << "parameters are left behind";
   EXPECT_EQ(other.code, 1);
   EXPECT_THAT(other.err, HasSubstr("fails, so the parameters of node '/other' are not known"));
 }
@@ -233,6 +243,14 @@ TEST_F(Upstream, WrongArgumentsAreNamedWithTheNearest) {
                  "robot_calibration/calibrate_base");
   expect_refused("calibrate_robot --instal", "did you mean '--install'?");
   expect_refused("calibrate_robot", "nothing to do; it takes [--arm]");
+  // Options of other programs have no effect: they are refused.
+  expect_refused("capture_poses --output out", "'--output' is not an argument");
+  expect_refused("calibrate_robot --arm --output out", "'--output' is not an argument");
+  expect_refused("to_rpy --urdf r.urdf 0 0 0", "'--urdf' is not an argument");
+  expect_refused("viz b.bag --robot ws://x:1", "'--robot' is not an argument");
+  EXPECT_EQ(as("to_rpy --help").out,
+            "usage: to_rpy A B C\n"
+            "       [--show: print the commands of kinecal instead of running them]\n");
   const Outcome help = as("calibrate --help");
   EXPECT_EQ(help.code, 0);
   EXPECT_THAT(help.out, HasSubstr("usage: calibrate [POSES | --manual | --from-bag [BAG]]"));

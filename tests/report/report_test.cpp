@@ -197,6 +197,10 @@ TEST(NextStep, AnswersTheVerdictWithACommand) {
   all.judgement = {};
   EXPECT_THAT(next_step(all), HasSubstr("use out/calibrated.urdf"));
   EXPECT_THAT(next_step(all), HasSubstr("\n  kinecal verify out NEW_SAMPLES"));
+  all.driver_file = "base_calibration.yaml";
+  EXPECT_EQ(next_step(all),
+            "use out/base_calibration.yaml, and verify it with a new recording:\n"
+            "  kinecal verify out NEW_SAMPLES");
 }
 
 /// The words of the command that next_step() gives.

@@ -81,11 +81,11 @@ void check_gains(const StepConfig& step, const BlockConfig& block, std::size_t m
   if (!field_is_free || gains.size() <= most) return;
   diagnostics.error(
       block.place,
-      fmt::format(
-          "{} goes with the size of {}: these readings show {} of them beside it; hold '{}', "
-          "or '{}' at the strength that is known",
-          block.name + "_field", fmt::join(gains, ", "), most == 1 ? "one" : "two", gains.back(),
-          block.name + "_field"));
+      fmt::format("{} and all of {} are free, but shrinking them together lowers every residual; "
+                  "hold '{}', "
+                  "or hold '{}' at the local strength of the field (World Magnetic Model)",
+                  block.name + "_field", fmt::join(gains, ", "), gains.back(),
+                  block.name + "_field"));
 }
 
 }  // namespace
@@ -138,9 +138,9 @@ void begin_magnetometer(Config& config, std::vector<Sample>& samples, Diagnostic
     diagnostics.note(
         blocks.front()->place,
         fmt::format("the readings of the magnetometer are in a plane, within {:.2g} uT: it turned "
-                    "about one axis, ({:.2f}, {:.2f}, {:.2f}).  They show the bias beside this "
-                    "axis; the bias along it and the strength of the field take turns about other "
-                    "axes, too",
+                    "about one axis, ({:.2f}, {:.2f}, {:.2f}).  They determine the bias across "
+                    "this axis; for the bias along it and the strength of the field, turn it about "
+                    "another axis, too",
                     plane->beside, normal.x(), normal.y(), normal.z()));
   }
   const detail::Scatter of(samples);
@@ -148,8 +148,10 @@ void begin_magnetometer(Config& config, std::vector<Sample>& samples, Diagnostic
   const auto [bias, field] = detail::linear_start(of);
   constexpr double kLeast = 1e-3;  // microtesla
   if (!(field > kLeast)) {
-    diagnostics.error(blocks.front()->place,
-                      "the readings of the magnetometer are all the same: did it turn?");
+    diagnostics.error(
+        blocks.front()->place,
+        "the readings of the magnetometer are all the same; record while it turns through "
+        "a full circle at least");
     return;
   }
   constexpr std::array<const char*, 3> kBias = {"bias_x", "bias_y", "bias_z"};

@@ -11,6 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/errors/base_motion.hpp"
+#include "kinecal/errors/magnetic_field.hpp"
+#include "kinecal/errors/prior.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/report/parameters_text.ipp"
 #include "kinecal/report/text.hpp"
@@ -322,12 +325,39 @@ bool has_before(const Findings& findings, const AnyProblem& problem, const Term&
 
 }  // namespace detail
 
+namespace detail {
+namespace {
+
+/// See Findings::driver_file.
+[[nodiscard]] std::string driver_file(const Calibration& calibration) {
+  const auto are_all = [&](const auto& is_type) {
+    return std::all_of(calibration.steps.begin(), calibration.steps.end(),
+                       [&](const CalibrationStep& step) {
+                         for (int t = 0; t < step.problem->num_terms(); ++t) {
+                           const std::string& type = step.problem->term(t).options.type;
+                           if (type != Prior::kType && !is_type(type)) return false;
+                         }
+                         return true;
+                       });
+  };
+  if (calibration.steps.empty()) return "calibrated.urdf";
+  if (are_all(is_base_type)) return "base_calibration.yaml";
+  if (are_all([](const std::string& type) { return type == MagneticField::kType; })) {
+    return "magnetometer_calibration.yaml";
+  }
+  return "calibrated.urdf";
+}
+
+}  // namespace
+}  // namespace detail
+
 Findings findings_of(const Robot& robot, const Calibration& calibration, JudgedResult judged,
                      std::span<const Sample> samples) {
   Findings findings{std::move(judged)};
   findings.robot = robot.name();
   findings.held = detail::held_values(robot, calibration, findings.result);
   findings.poses = recorded_poses(calibration, samples);
+  findings.driver_file = detail::driver_file(calibration);
   return findings;
 }
 

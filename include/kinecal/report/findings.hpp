@@ -32,6 +32,8 @@ struct Findings : JudgedResult {
   ReadBack read_back = {};     ///< what those see who read the files
   RecordedPoses poses = {};    ///< of the samples that were used
   ProgramCall call = {};       ///< how the program was called
+  /// The file of the results that a driver needs: for a base or a magnetometer without anything else, its own.
+  std::string driver_file = "calibrated.urdf";
   bool has_sample_poses = false;  ///< a target has a pose of its own in each sample
   std::int64_t drawn =
       0;  ///< samples by which a log was judged where all at once are needed; 0: all

@@ -136,7 +136,10 @@ std::string next_step(const Findings& findings) {
              ", and calibrate other samples, too: the results should agree";
     }
     if (call.output.empty()) return "verify the result with a few new poses";
-    return "use " + call.output + "/calibrated.urdf, and verify it with a few new poses:\n  " +
+    return "use " + call.output + "/" + findings.driver_file +
+           (findings.driver_file == "calibrated.urdf"
+                ? ", and verify it with a few new poses:\n  "
+                : ", and verify it with a new recording:\n  ") +
            ShellCommand{"kinecal", "verify", shell_file(call.output), "NEW_SAMPLES"}.str();
   }
   if (remedy.kind == Kind::mend) {

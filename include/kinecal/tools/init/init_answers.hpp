@@ -88,6 +88,8 @@ inline constexpr std::array<InitTargetWord, 20> kInitTargets = {{
 
 /// The word for a mobile base, which is not measured against a target: see initial_base.hpp.
 inline constexpr std::string_view kBaseTarget = "base";
+/// The word for a magnetometer, which is measured against the field of the earth: see magnetometer_config.hpp.
+inline constexpr std::string_view kMagnetometerTarget = "magnetometer";
 
 /// The name of a target on the command line.
 [[nodiscard]] constexpr std::string_view to_string(InitTarget target,
@@ -112,7 +114,7 @@ inline constexpr std::string_view kBaseTarget = "base";
   for (const InitTargetWord& known : kInitTargets) {
     words += (words.empty() ? "" : ", ") + std::string(known.word);
   }
-  return words + ", " + std::string(kBaseTarget);
+  return words + ", " + std::string(kBaseTarget) + ", " + std::string(kMagnetometerTarget);
 }
 
 /// True if the tip of an arm touches the target, or what it carries reads gravity: joints are all that is recorded, and at

@@ -56,11 +56,12 @@ std::string magnetometer_config(const std::string& base_link, std::span<const Sa
   constexpr std::array<const char*, 3> kInPlane = {
       " - mag_yy\n - mag_yz\n", " - mag_xx\n - mag_xz\n", " - mag_xx\n - mag_xy\n"};
   const std::string soft =
-      plane ? " # Soft iron, as far as a turn about one axis shows it: which way the circle is "
-              "longer.\n" +
+      plane ? " # Soft iron in the plane of the turn: the readings trace an ellipse, not a "
+              "circle.\n" +
                   std::string(kInPlane[static_cast<std::size_t>(about)])
-            : " # Soft iron.  The size of all of it goes with the strength of the field: mag_zz is "
-              "held.\n - mag_xx\n - mag_yy\n - mag_xy\n - mag_xz\n - mag_yz\n";
+            : " # Soft iron.  Its overall scale cannot be told from the strength of the field: "
+              "mag_zz "
+              "is held.\n - mag_xx\n - mag_yy\n - mag_xy\n - mag_xz\n - mag_yz\n";
   return fmt::format(
       "# A magnetometer{}.\nbase_link: {}\nmodels: []\nfree_params:\n"
       " # Hard iron: what is magnetic and turns with it, microtesla.\n{}"
