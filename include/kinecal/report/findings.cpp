@@ -13,7 +13,6 @@
 
 #include "kinecal/errors/base_motion.hpp"
 #include "kinecal/errors/magnetic_field.hpp"
-#include "kinecal/errors/prior.hpp"
 #include "kinecal/geometry/median.hpp"
 #include "kinecal/report/parameters_text.ipp"
 #include "kinecal/report/text.hpp"
@@ -323,9 +322,6 @@ bool has_before(const Findings& findings, const AnyProblem& problem, const Term&
   return " · by the URDF alone " + errors_text(read_back.of(read_back.judged)->errors);
 }
 
-}  // namespace detail
-
-namespace detail {
 namespace {
 
 /// See Findings::driver_file.
@@ -335,7 +331,7 @@ namespace {
                        [&](const CalibrationStep& step) {
                          for (int t = 0; t < step.problem->num_terms(); ++t) {
                            const std::string& type = step.problem->term(t).options.type;
-                           if (type != Prior::kType && !is_type(type)) return false;
+                           if (!is_type(type)) return false;
                          }
                          return true;
                        });
