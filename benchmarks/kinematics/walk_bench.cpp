@@ -108,6 +108,55 @@ void BM_twists_walk(benchmark::State& state) {
 }
 BENCHMARK(BM_twists_walk);
 
+/// 1000 poses with Jacobians of an arm of seven joints; the control takes one pose after the other.
+struct ThousandPoses {
+  static constexpr std::size_t kPoses = 1000, kJoints = 7;
+  ChainOfColumns chain = [] {
+    std::vector<Joint> joints;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      names.push_back("joint_" + std::to_string(i));
+      Joint joint{.name = names.back(),
+                  .type = JointType::revolute,
+                  .parent = "link_" + std::to_string(i),
+                  .child = "link_" + std::to_string(i + 1)};
+      joint.axis = {0.0, 0.0, 1.0};
+      joint.origin.translation = {0.1, 0.0, 0.3};
+      joint.origin.rotation =
+          Eigen::AngleAxisd(i % 2 == 0 ? 1.5 : -1.5, Eigen::Vector3d::UnitX()).toRotationMatrix();
+      joints.push_back(joint);
+    }
+    return make_chain_of_columns(Robot("arm", joints), "link_0", "link_7", names);
+  }();
+  std::vector<double> positions = std::vector<double>(kPoses * kJoints, 0.3);
+  std::vector<double> poses = std::vector<double>(16 * kPoses);
+  std::vector<double> jacobians = std::vector<double>(6 * kJoints * kPoses);
+};
+
+void BM_thousand_jacobians_control(benchmark::State& state) {
+  ThousandPoses work;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(6, 7);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(work.positions.data());
+    for (std::size_t i = 0; i < ThousandPoses::kPoses; ++i) {
+      const Eigen::Map<const Eigen::VectorXd> q(&work.positions[7 * i], 7);
+      benchmark::DoNotOptimize(geometric_jacobian(work.chain.chain, q, jacobian));
+      benchmark::DoNotOptimize(jacobian.data());
+    }
+  }
+}
+BENCHMARK(BM_thousand_jacobians_control);
+
+void BM_thousand_jacobians(benchmark::State& state) {
+  ThousandPoses work;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(work.positions.data());
+    forward_kinematics(work.chain, work.positions, work.poses, work.jacobians);
+    benchmark::DoNotOptimize(work.jacobians.data());
+  }
+}
+BENCHMARK(BM_thousand_jacobians);
+
 }  // namespace
 }  // namespace kinecal
 

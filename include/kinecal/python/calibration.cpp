@@ -12,8 +12,8 @@
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/procedure/calibrated_files.hpp"
 #include "kinecal/procedure/calibrated_page.hpp"
-#include "kinecal/python/arrays.hpp"
-#include "kinecal/python/samples.hpp"
+#include "kinecal/python/arrays.ipp"
+#include "kinecal/python/sample_list.ipp"
 #include "kinecal/report/json.hpp"
 
 namespace kinecal::python {

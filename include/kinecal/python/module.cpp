@@ -7,7 +7,7 @@
 
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/python/arrays.hpp"
+#include "kinecal/python/arrays.ipp"
 
 namespace kinecal::python {
 namespace {

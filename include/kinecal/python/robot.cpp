@@ -6,7 +6,7 @@
 
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/kinematics/pose_batch.hpp"
-#include "kinecal/python/arrays.hpp"
+#include "kinecal/python/arrays.ipp"
 
 namespace kinecal::python {
 namespace {

@@ -1,7 +1,5 @@
 // Samples in Python: from arrays, from files, and as arrays again.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/python/samples.hpp"
-
 #include <pybind11/stl.h>
 
 #include <cmath>
@@ -19,7 +17,8 @@
 #include "kinecal/files/recordings/write_recording.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
-#include "kinecal/python/arrays.hpp"
+#include "kinecal/python/arrays.ipp"
+#include "kinecal/python/sample_list.ipp"
 #include "kinecal/samples/joint_moves.hpp"
 
 namespace kinecal::python {
