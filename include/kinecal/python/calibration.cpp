@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -10,9 +11,9 @@
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/procedure/calibrate_log.hpp"
 #include "kinecal/procedure/calibrated_files.hpp"
 #include "kinecal/procedure/calibrated_page.hpp"
-#include "kinecal/python/arrays.ipp"
 #include "kinecal/python/sample_list.ipp"
 #include "kinecal/report/json.hpp"
 
@@ -53,8 +54,10 @@ Config config_of(const std::string& text, const std::string& name, Search search
 }
 
 /// Arguments of calibrate(), as kinecal/calibrate.py gives them.
-CalibrationOptions options_of(const py::dict& given) {
+CalibrationOptions options_of(const py::dict& given, const py::object& progress) {
   CalibrationOptions options;
+  options.progress = progress_of(progress);
+  options.solving.meter = meter_of();
   const auto take = [&](const char* name, auto& value) {
     if (given.contains(name)) value = given[name].cast<std::decay_t<decltype(value)>>();
   };
@@ -76,25 +79,65 @@ struct Calibrated {
   std::string config;
 };
 
+/// What calibrate() and calibrate_arrays() have in common.
+struct Task {
+  CalibrationSetup setup;
+  CalibrationOptions options;
+  Diagnostics found;
+};
+
+Task task_of(const std::string& urdf_text, const std::string& urdf_name,
+             const std::optional<std::string>& config, const std::string& config_name,
+             CalibrationOptions options) {
+  Task task{.setup = {.robot = parse_urdf(urdf_text, urdf_name),
+                      .urdf_text = urdf_text,
+                      .urdf = urdf_name},
+            .options = std::move(options),
+            .found = {}};
+  if (config) {
+    task.setup.config = config_of(*config, config_name, task.options.search, task.found);
+  }
+  return task;
+}
+
 std::shared_ptr<Calibrated> calibrate(const std::string& urdf_text, const std::string& urdf_name,
                                       const SampleList& samples,
                                       const std::optional<std::string>& config,
                                       const std::string& config_name, const py::dict& given,
                                       const py::object& progress) {
-  CalibrationOptions options = options_of(given);
-  options.progress = progress_of(progress);
-  options.solving.meter = meter_of();
+  const CalibrationOptions options = options_of(given, progress);
   const py::gil_scoped_release others_may_run;
-  Diagnostics found = samples.diagnostics;
-  CalibrationSetup setup{.robot = parse_urdf(urdf_text, urdf_name),
-                         .samples = samples.samples,
-                         .urdf_text = urdf_text,
-                         .urdf = urdf_name};
-  if (config) setup.config = config_of(*config, config_name, options.search, found);
-  PreparedCalibration prepared = prepare(std::move(setup), options, std::move(found));
+  Task task = task_of(urdf_text, urdf_name, config, config_name, options);
+  task.setup.samples = samples.samples;
+  PreparedCalibration prepared = prepare(std::move(task.setup), options, samples.diagnostics);
   prepared.diagnostics.throw_if_errors();
   return std::make_shared<Calibrated>(
       Calibrated{calibrate_robot(std::move(prepared), options), config.value_or("")});
+}
+
+/// The same with arrays of which only parts become samples at a time: see calibrate_log().
+/// @param rows  of a part
+std::shared_ptr<Calibrated> calibrate_arrays(const std::string& urdf_text,
+                                             const std::string& urdf_name,
+                                             const SampleArrays& arrays, const std::string& config,
+                                             const std::string& config_name, const py::dict& given,
+                                             const py::object& progress, std::size_t rows) {
+  const CalibrationOptions options = options_of(given, progress);
+  const py::gil_scoped_release others_may_run;
+  Task task = task_of(urdf_text, urdf_name, config, config_name, options);
+  RecordedLog log;
+  for (std::size_t first = 0; first < arrays.size(); first += rows) {
+    const std::string number = std::to_string(first + 1);
+    log.names.push_back(arrays.name + ":" + std::string(12 - number.size(), '0') + number);
+  }
+  log.read = [&arrays, rows](int part) {
+    const std::size_t first = rows * static_cast<std::size_t>(part);
+    return arrays.samples(first, std::min(first + rows, arrays.size()));
+  };
+  PreparedLog prepared = prepare_log(std::move(task.setup), std::move(log), options);
+  prepared.draw.diagnostics.throw_if_errors();
+  return std::make_shared<Calibrated>(
+      Calibrated{calibrate_log(std::move(prepared), options), config});
 }
 
 /// What the block compares, by features: sample (n), feature's place or id (n), residual (n, components).
@@ -221,6 +264,9 @@ void bind_calibration(py::module_& module) {
       .def("residuals", [](const Calibrated& of) { return all_residuals(of.robot); })
       .def("page", &page_of, py::arg("mesh_paths"), py::arg("date"), Unlocked())
       .def("warnings", &warnings_of);
+  module.def("calibrate_arrays", &calibrate_arrays, py::arg("urdf"), py::arg("urdf_name"),
+             py::arg("arrays"), py::arg("config"), py::arg("config_name"), py::arg("options"),
+             py::arg("progress"), py::arg("rows"));
   module.def("write_folder", &write_folder, py::arg("folder"), py::arg("files"));
   module.def("calibrate", &calibrate, py::arg("urdf"), py::arg("urdf_name"), py::arg("samples"),
              py::arg("config"), py::arg("config_name"), py::arg("options"), py::arg("progress"));

@@ -10,14 +10,12 @@
 #include <sstream>
 #include <utility>
 
-#include "kinecal/files/cameras/camera_info.hpp"
 #include "kinecal/files/cameras/read_camera_file.hpp"
-#include "kinecal/files/cameras/set_camera.hpp"
+#include "kinecal/files/poses/poses.hpp"
 #include "kinecal/files/recordings/read_recording.hpp"
 #include "kinecal/files/recordings/write_recording.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
-#include "kinecal/python/arrays.ipp"
 #include "kinecal/python/sample_list.ipp"
 #include "kinecal/samples/joint_moves.hpp"
 
@@ -25,14 +23,6 @@ namespace kinecal::python {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-/// What a sensor saw, as arrays give it.
-struct SensorArray {
-  std::string sensor;    ///< name
-  std::string frame;     ///< link or frame in which features are given
-  Numbers features;      ///< (n, k, 2 or 3) pixels or points, or (n, k, 4, 4) poses; NaN: not seen
-  std::vector<int> ids;  ///< of the k features; empty: by their place
-};
 
 /// A feature of an array; nullopt if it was not seen.
 std::optional<Feature> feature_at(const SensorArray& of, const double* numbers, std::size_t size) {
@@ -52,54 +42,57 @@ std::optional<Feature> feature_at(const SensorArray& of, const double* numbers, 
   return feature;
 }
 
-/// Adds what a sensor saw to each sample.  Features that were not seen are left out where they have ids, else they keep
+/// Adds what a sensor saw to samples.  Features that were not seen are left out where they have ids, else they keep
 /// their place as NaN: it identifies the others.
-void add_observations(const SensorArray& of, std::vector<Sample>& samples) {
-  const std::size_t count = size_of(of.features, 1);
-  const std::size_t size = static_cast<std::size_t>(of.features.size()) /
-                           std::max<std::size_t>(1, samples.size() * count);
-  const double* numbers = of.features.data();
-  for (Sample& sample : samples) {
+/// @param first  row of the first sample
+void add_observations(const SensorArray& of, std::size_t first, std::vector<Sample>& samples) {
+  const std::size_t rows = size_of(of.features, 0), count = size_of(of.features, 1);
+  const std::size_t row_size = rows == 0 ? 0 : static_cast<std::size_t>(of.features.size()) / rows;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double* numbers = of.features.data() + (rows == 1 ? 0 : first + i) * row_size;
     Observation observation;
     observation.sensor = of.sensor;
+    observation.camera = of.camera;
     bool is_seen = false;
-    for (std::size_t k = 0; k < count; ++k, numbers += size) {
-      std::optional<Feature> feature = feature_at(of, numbers, size);
+    for (std::size_t k = 0; k < count; ++k) {
+      std::optional<Feature> feature =
+          feature_at(of, numbers + k * (row_size / count), row_size / count);
       is_seen = is_seen || feature.has_value();
       if (!feature && !of.ids.empty()) continue;
-      if (!feature)
+      if (!feature) {
         feature = Feature{.frame = of.frame, .point = Vector3<double>::Constant(kMissing)};
+      }
       if (!of.ids.empty()) feature->id = of.ids[k];
       observation.features.push_back(*std::move(feature));
     }
-    if (is_seen) sample.observations.push_back(std::move(observation));
+    if (is_seen) samples[i].observations.push_back(std::move(observation));
   }
 }
 
-SampleList samples_of_arrays(const std::vector<std::string>& joints, const Numbers& positions,
-                             const std::vector<SensorArray>& sensors,
-                             const std::map<std::string, Numbers>& conditions,
-                             const std::optional<Numbers>& stamps, const std::string& name) {
-  SampleList list;
-  list.samples.resize(size_of(positions, 0));
-  const double* position = positions.data();
-  for (std::size_t i = 0; i < list.samples.size(); ++i) {
-    Sample& sample = list.samples[i];
+}  // namespace
+
+std::vector<Sample> SampleArrays::samples(std::size_t first, std::size_t end) const {
+  std::vector<Sample> result(end - first);
+  for (std::size_t i = first; i < end; ++i) {
+    Sample& sample = result[i - first];
+    const double* position = positions.data() + i * joints.size();
     sample.joint_names = joints;
     sample.joint_positions.assign(position, position + joints.size());
-    position += joints.size();
     sample.source = name + ":" + std::to_string(i + 1);
-    for (const auto& [condition, values] : conditions)
+    for (const auto& [condition, values] : conditions) {
       sample.conditions[condition] = values.data()[i];
+    }
     if (stamps && !std::isnan(stamps->data()[i])) {
       sample.stamp = std::chrono::nanoseconds(std::llround(1e9 * stamps->data()[i]));
     }
   }
-  for (const SensorArray& sensor : sensors) add_observations(sensor, list.samples);
-  set_joint_moves(list.samples);
-  set_joint_velocities(list.samples);
-  return list;
+  for (const SensorArray& sensor : sensors) add_observations(sensor, first, result);
+  set_joint_moves(result);
+  set_joint_velocities(result);
+  return result;
 }
+
+namespace {
 
 SampleList read_sample_files(const std::vector<std::string>& files) {
   SampleList list;
@@ -171,10 +164,10 @@ std::vector<std::string> sensors_of(const SampleList& list) {
   return {sensors.begin(), sensors.end()};
 }
 
-/// Gives a sensor the intrinsics of a camera.
+/// Intrinsics by numbers.
 /// @param numbers  fx fy cx cy, pixels; then distortion as its model orders it
-void set_intrinsics(SampleList& list, const std::string& sensor, int width, int height,
-                    const std::vector<double>& numbers, const std::string& model) {
+CameraInfo camera_of(int width, int height, const std::vector<double>& numbers,
+                     const std::string& model) {
   CameraInfo camera;
   camera.width = width;
   camera.height = height;
@@ -184,11 +177,41 @@ void set_intrinsics(SampleList& list, const std::string& sensor, int width, int 
   camera.r = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
   camera.p = {numbers[0], 0.0, numbers[2], 0.0, 0.0, numbers[1],
               numbers[3], 0.0, 0.0,        0.0, 1.0, 0.0};
+  return camera;
+}
+
+/// @param argument  "camera.yaml", or "camera.yaml:cam1" of a file with several
+CameraInfo camera_of_file(const std::string& argument) {
+  Diagnostics found;
+  CameraInfo camera = read_camera_argument(argument, found);
+  found.throw_if_errors();
+  return camera;
+}
+
+void set_camera_of(SampleList& list, const std::string& sensor, const CameraInfo& camera) {
+  bool is_seen = false;
   for (Sample& sample : list.samples) {
     for (Observation& seen : sample.observations) {
-      if (seen.sensor == sensor) seen.camera = camera;
+      if (seen.sensor != sensor) continue;
+      seen.camera = camera;
+      is_seen = true;
     }
   }
+  if (!is_seen) throw InputError("cameras: '" + sensor + "' observed nothing");
+}
+
+/// Samples without observations: poses that were chosen.
+SampleList read_poses(const std::string& file) {
+  SampleList list;
+  for (const CapturePose& pose : read_poses_yaml(file, list.diagnostics)) {
+    Sample sample;
+    sample.joint_names = pose.joint_names;
+    sample.joint_positions = pose.positions;
+    sample.source = file + ":" + std::to_string(list.samples.size() + 1);
+    list.samples.push_back(std::move(sample));
+  }
+  list.diagnostics.throw_if_errors();
+  return list;
 }
 
 void save_samples(const SampleList& list, const std::string& path) {
@@ -205,16 +228,35 @@ void save_samples(const SampleList& list, const std::string& path) {
 }  // namespace
 
 void bind_samples(py::module_& module) {
+  py::class_<CameraInfo>(module, "Camera")
+      .def(py::init(&camera_of), py::arg("width"), py::arg("height"), py::arg("numbers"),
+           py::arg("model"))
+      .def(py::init(&camera_of_file), py::arg("file"));
   py::class_<SensorArray>(module, "SensorArray")
-      .def(py::init(
-               [](std::string sensor, std::string frame, Numbers features, std::vector<int> ids) {
-                 return SensorArray{std::move(sensor), std::move(frame), std::move(features),
-                                    std::move(ids)};
-               }),
-           py::arg("sensor"), py::arg("frame"), py::arg("features"), py::arg("ids"));
+      .def(py::init([](std::string sensor, std::string frame, Numbers features,
+                       std::vector<int> ids, std::optional<CameraInfo> camera) {
+             return SensorArray{std::move(sensor), std::move(frame), std::move(features),
+                                std::move(ids), std::move(camera)};
+           }),
+           py::arg("sensor"), py::arg("frame"), py::arg("features"), py::arg("ids"),
+           py::arg("camera"));
+  py::class_<SampleArrays>(module, "SampleArrays")
+      .def(py::init([](std::vector<std::string> joints, Numbers positions,
+                       std::vector<SensorArray> sensors, std::map<std::string, Numbers> conditions,
+                       std::optional<Numbers> stamps, std::string name) {
+             return SampleArrays{std::move(joints),     std::move(positions), std::move(sensors),
+                                 std::move(conditions), std::move(stamps),    std::move(name)};
+           }),
+           py::arg("joints"), py::arg("positions"), py::arg("sensors"), py::arg("conditions"),
+           py::arg("stamps"), py::arg("name"))
+      .def("__len__", &SampleArrays::size)
+      .def("samples", [](const SampleArrays& of) {
+        const py::gil_scoped_release others_may_run;
+        SampleList list;
+        list.samples = of.samples(0, of.size());
+        return list;
+      });
   py::class_<SampleList>(module, "Samples")
-      .def(py::init(&samples_of_arrays), py::arg("joints"), py::arg("positions"),
-           py::arg("sensors"), py::arg("conditions"), py::arg("stamps"), py::arg("name"))
       .def("__len__", [](const SampleList& list) { return list.samples.size(); })
       .def("joints", &joints_of_samples)
       .def("sensors", &sensors_of)
@@ -236,17 +278,12 @@ void bind_samples(py::module_& module) {
            [](SampleList& list, const SampleList& more) {
              list.samples.insert(list.samples.end(), more.samples.begin(), more.samples.end());
            })
-      .def("set_camera_file",
-           [](SampleList& list, const std::string& argument) {
-             Diagnostics found;
-             set_camera(list.samples, argument, found);
-             found.throw_if_errors();
-           })
-      .def("set_intrinsics", &set_intrinsics)
+      .def("set_camera", &set_camera_of, py::arg("sensor"), py::arg("camera"))
       .def("save", &save_samples, py::arg("path"))
       .def_readonly("urdf", &SampleList::urdf)
       .def_property_readonly("warnings",
                              [](const SampleList& list) { return list.diagnostics.warnings; });
+  module.def("read_poses", &read_poses, py::arg("file"));
   module.def("read_samples", &read_sample_files, py::arg("files"));
 }
 

@@ -1,5 +1,5 @@
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,12 +31,25 @@ class Chain:
         self, positions: NDArray[np.float64], jacobians: bool
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 
-class SensorArray:
+class Camera:
+    @overload
+    def __init__(self, file: str) -> None: ...
+    @overload
     def __init__(
-        self, sensor: str, frame: str, features: NDArray[np.float64], ids: Sequence[int]
+        self, width: int, height: int, numbers: Sequence[float], model: str
     ) -> None: ...
 
-class Samples:
+class SensorArray:
+    def __init__(
+        self,
+        sensor: str,
+        frame: str,
+        features: NDArray[np.float64],
+        ids: Sequence[int],
+        camera: Camera | None,
+    ) -> None: ...
+
+class SampleArrays:
     def __init__(
         self,
         joints: Sequence[str],
@@ -47,6 +60,10 @@ class Samples:
         name: str,
     ) -> None: ...
     def __len__(self) -> int: ...
+    def samples(self) -> Samples: ...
+
+class Samples:
+    def __len__(self) -> int: ...
     def joints(self) -> list[str]: ...
     def sensors(self) -> list[str]: ...
     def positions(self, joints: Sequence[str]) -> NDArray[np.float64]: ...
@@ -54,16 +71,14 @@ class Samples:
     def sources(self) -> list[str]: ...
     def take(self, numbers: Sequence[int]) -> Samples: ...
     def append(self, more: Samples) -> None: ...
-    def set_camera_file(self, argument: str) -> None: ...
-    def set_intrinsics(
-        self, sensor: str, width: int, height: int, numbers: Sequence[float], model: str
-    ) -> None: ...
+    def set_camera(self, sensor: str, camera: Camera) -> None: ...
     def save(self, path: str) -> None: ...
     @property
     def urdf(self) -> str: ...
     @property
     def warnings(self) -> list[str]: ...
 
+def read_poses(file: str) -> Samples: ...
 def read_samples(files: Sequence[str]) -> Samples: ...
 
 class Calibrated:
@@ -88,4 +103,14 @@ def calibrate(
     config_name: str,
     options: dict[str, Any],
     progress: Callable[[str, int, float], Any] | None,
+) -> Calibrated: ...
+def calibrate_arrays(
+    urdf: str,
+    urdf_name: str,
+    arrays: SampleArrays,
+    config: str,
+    config_name: str,
+    options: dict[str, Any],
+    progress: Callable[[str, int, float], Any] | None,
+    rows: int,
 ) -> Calibrated: ...

@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str, int, float], Any]
 
+#: Arrays of more samples are calibrated part by part, as ``kinecal calibrate-log`` does: they are not copied.
+_MANY = 50_000
+_ROWS = 10_000  #: of a part
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -284,6 +288,8 @@ def calibrate(
 ) -> Result:
     """Calibrates a robot and judges the result, as ``kinecal calibrate`` does.
 
+    More than 50 000 samples of arrays are calibrated as ``kinecal calibrate-log`` does: with all of them, judged on a draw.
+
     Args:
         robot: the robot, or its URDF.
         samples: the samples, or their file.
@@ -320,7 +326,13 @@ def calibrate(
         "mesh_paths": paths,
         "search": search,
     }
-    calibrated = _kinecal.calibrate(
-        robot.urdf, robot.file, samples._samples, text, name, dict(options), progress
-    )
+    arrays = samples._arrays
+    if arrays is not None and text is not None and not search and len(samples) > _MANY:
+        calibrated = _kinecal.calibrate_arrays(
+            robot.urdf, robot.file, arrays, text, name, dict(options), progress, _ROWS
+        )
+    else:
+        calibrated = _kinecal.calibrate(
+            robot.urdf, robot.file, samples._samples, text, name, dict(options), progress
+        )
     return Result(calibrated, paths)

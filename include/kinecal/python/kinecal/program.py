@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
 
+from . import _kinecal
 from .calibration import Result, calibrate
 from .config import AnyConfig, config_text
 from .errors import KinecalError
@@ -158,24 +159,24 @@ def verify(result: AnyResult, samples: AnySamples, **options: Any) -> Outcome:
     Args:
         options: of ``kinecal verify``.
     """
-    with _folder() as folder:
-        call = _Call(folder)
+    with _folder() as own:
+        call = _Call(own)
         words = ["verify", call.result(result, "result"), *call.samples(samples), *_flags(options)]
         return call.run(*words, report=True)
 
 
 def evaluate(result: AnyResult, samples: AnySamples, **options: Any) -> Outcome:
     """How a result fits other samples, without solving; ``options`` are those of ``kinecal evaluate``."""
-    with _folder() as folder:
-        call = _Call(folder)
+    with _folder() as own:
+        call = _Call(own)
         words = ["evaluate", call.result(result, "result"), *call.samples(samples), *_flags(options)]
         return call.run(*words, report=True)
 
 
 def compare(earlier: AnyResult, later: AnyResult, **options: Any) -> Outcome:
     """Which parameters of two results differ by more than chance explains; ``options`` are those of ``kinecal compare``."""
-    with _folder() as folder:
-        call = _Call(folder)
+    with _folder() as own:
+        call = _Call(own)
         words = ["compare", call.result(earlier, "earlier"), call.result(later, "later"), *_flags(options)]
         return call.run(*words, report=True)
 
@@ -184,12 +185,12 @@ def compare(earlier: AnyResult, later: AnyResult, **options: Any) -> Outcome:
 class Poses(Outcome):
     """Poses that were chosen."""
 
-    samples: Samples | None = None  #: their positions; None: no poses reach what was asked for
+    samples: Samples | None = None  #: their positions, without observations; None: no poses reach what was asked for
 
 
 def _poses(command: str, robot: AnyRobot, config: AnyConfig | None, samples: AnySamples | None, options: Any) -> Poses:
-    with _folder() as folder:
-        call = _Call(folder)
+    with _folder() as own:
+        call = _Call(own)
         output = call.folder / "poses.yaml"
         words = [command, "--urdf", call.robot(robot), "--output", str(output)]
         if config is not None:
@@ -197,7 +198,7 @@ def _poses(command: str, robot: AnyRobot, config: AnyConfig | None, samples: Any
         if samples is not None:
             words += ["--samples", *call.samples(samples)]
         done = call.run(*words, *_flags(options))
-        chosen = Samples.read(output) if output.exists() else None
+        chosen = Samples._of(_kinecal.read_poses(str(output))) if output.exists() else None
         return Poses(done.code, done.text, {}, chosen)
 
 
@@ -233,8 +234,8 @@ def detect(
         poses: table of joint positions, or those of each image by joint; None: there is no robot.
         options: of ``kinecal detect``: ``bag``, ``camera``, ``frame``.
     """
-    with _folder() as folder:
-        call = _Call(folder)
+    with _folder() as own:
+        call = _Call(own)
         output = call.folder / "found.yaml"
         words = ["detect", call.config(target, "capture.yaml"), "--output", str(output)]
         if images is not None:
@@ -255,8 +256,8 @@ def simulate(robot: AnyRobot, folder: str | os.PathLike[str], **options: Any) ->
     Returns:
         The folder.
     """
-    with _folder() as folder:
-        call = _Call(folder)
+    with _folder() as own:
+        call = _Call(own)
         call.run("simulate", call.robot(robot), "--output", os.fspath(folder), *_flags(options))
         return Path(folder)
 
@@ -272,8 +273,8 @@ def init(robot: AnyRobot | None = None, samples: AnySamples | None = None, **opt
     Returns:
         Texts by name of the file; ``calibrate(robot, samples, texts["calibrate.yaml"])``.
     """
-    with _folder() as folder:
-        call = _Call(folder)
+    with _folder() as own:
+        call = _Call(own)
         made = call.folder / "made"
         made.mkdir()
         words = ["init", "--output", str(made / "calibrate.yaml")]
@@ -288,8 +289,8 @@ def init(robot: AnyRobot | None = None, samples: AnySamples | None = None, **opt
 def grade(episodes: Sequence[str | os.PathLike[str]] | str | os.PathLike[str], **options: Any) -> Outcome:
     """Episodes of a data set in which the camera or a zero is not as in the others; ``options`` are those of
     ``kinecal grade``."""
-    with _folder() as folder:
-        call = _Call(folder)
+    with _folder() as own:
+        call = _Call(own)
         files = [episodes] if isinstance(episodes, (str, os.PathLike)) else list(episodes)
         return call.run("grade", *(os.fspath(file) for file in files), *_flags(options), report=True)
 

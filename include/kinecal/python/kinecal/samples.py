@@ -77,26 +77,46 @@ class Samples:
                     raise KinecalError(
                         f"frames: '{sensor}' is missing: the link in which its {kind} are given"
                     )
-                sensors.append(_sensor(sensor, frame, features, (ids or {}).get(sensor)))
+                camera = (cameras or {}).get(sensor)
+                sensors.append(_sensor(sensor, frame, features, (ids or {}).get(sensor), camera))
         by_condition = {
             key: shaped(array, f"conditions['{key}']", (len(rows),))
             for key, array in (conditions or {}).items()
         }
         times = None if stamps is None else shaped(stamps, "stamps", (len(rows),))
-        self._samples = _kinecal.Samples(names, rows, sensors, by_condition, times, name)
-        for sensor, camera in (cameras or {}).items():
-            self._set_camera(sensor, camera)
+        self._arrays: _kinecal.SampleArrays | None = _kinecal.SampleArrays(
+            names, rows, sensors, by_condition, times, name
+        )
+        self._list: _kinecal.Samples | None = None
+
+    @property
+    def _samples(self) -> _kinecal.Samples:
+        """As the library has them; arrays are copied when somebody asks."""
+        if self._list is None:
+            assert self._arrays is not None
+            self._list = self._arrays.samples()
+        return self._list
 
     @classmethod
-    def read(cls, *files: str | os.PathLike[str]) -> Samples:
+    def read(
+        cls,
+        *files: str | os.PathLike[str],
+        cameras: Mapping[str, str | os.PathLike[str] | Mapping[str, Any]] | None = None,
+    ) -> Samples:
         """Samples of files, in any format that kinecal reads: YAML, bags, MCAP, tables with columns.yaml.
+
+        Args:
+            cameras: by sensor, intrinsics of one that was recorded without, as of :class:`Samples`.
 
         Raises:
             KinecalError: with file and line of each error.
         """
         if not files:
             raise KinecalError("Samples.read(): at least one file is needed")
-        return cls._of(_kinecal.read_samples([os.fspath(file) for file in files]))
+        samples = _kinecal.read_samples([os.fspath(file) for file in files])
+        for sensor, camera in (cameras or {}).items():
+            samples.set_camera(sensor, _camera(sensor, camera))
+        return cls._of(samples)
 
     @classmethod
     def from_records(
@@ -138,7 +158,7 @@ class Samples:
     @classmethod
     def _of(cls, samples: _kinecal.Samples) -> Samples:
         new = cls.__new__(cls)
-        new._samples = samples
+        new._arrays, new._list = None, samples
         return new
 
     @property
@@ -176,7 +196,7 @@ class Samples:
         self._samples.save(os.fspath(file))
 
     def __len__(self) -> int:
-        return len(self._samples)
+        return len(self._samples) if self._arrays is None else len(self._arrays)
 
     @overload
     def __getitem__(self, index: int) -> Samples: ...
@@ -206,26 +226,25 @@ class Samples:
         seen = ", ".join(self.sensors) or "nothing observed"
         return f"<Samples: {len(self)} of {len(self.joints)} joints; {seen}>"
 
-    def _set_camera(self, sensor: str, camera: str | os.PathLike[str] | Mapping[str, Any]) -> None:
-        if not isinstance(camera, Mapping):
-            self._samples.set_camera_file(f"{sensor}={os.fspath(camera)}")
-            return
-        from .arrays import numbers, shaped
 
-        where = f"cameras['{sensor}']"
-        missing = [key for key in ("K", "width", "height") if key not in camera]
-        if missing:
-            raise KinecalError(f"{where}: '{missing[0]}' is missing")
-        k = shaped(camera["K"], f"{where}['K']", (3, 3))
-        d = numbers(camera.get("D", []), f"{where}['D']").ravel()
-        values = [k[0, 0], k[1, 1], k[0, 2], k[1, 2], *d]
-        self._samples.set_intrinsics(
-            sensor,
-            int(camera["width"]),
-            int(camera["height"]),
-            [float(value) for value in values],
-            str(camera.get("distortion_model", "plumb_bob" if len(d) > 0 else "")),
-        )
+def _camera(sensor: str, camera: str | os.PathLike[str] | Mapping[str, Any]) -> _kinecal.Camera:
+    if not isinstance(camera, Mapping):
+        return _kinecal.Camera(os.fspath(camera))
+    from .arrays import numbers, shaped
+
+    where = f"cameras['{sensor}']"
+    missing = [key for key in ("K", "width", "height") if key not in camera]
+    if missing:
+        raise KinecalError(f"{where}: '{missing[0]}' is missing")
+    k = shaped(camera["K"], f"{where}['K']", (3, 3))
+    d = numbers(camera.get("D", []), f"{where}['D']").ravel()
+    values = [k[0, 0], k[1, 1], k[0, 2], k[1, 2], *d]
+    return _kinecal.Camera(
+        int(camera["width"]),
+        int(camera["height"]),
+        [float(value) for value in values],
+        str(camera.get("distortion_model", "plumb_bob" if len(d) > 0 else "")),
+    )
 
 
 def _positions(
@@ -259,9 +278,11 @@ def _features(array: ArrayLike, kind: str, sensor: str, count: int) -> Array:
     features = numbers(array, f"{kind}['{sensor}']")
     if kind == "poses" and features.ndim == 3:
         features = features[:, np.newaxis]
-    if features.ndim == len(size) + 1 and kind != "poses":  # the same in each pose
-        features = np.broadcast_to(features, (count, *features.shape))
-    if features.ndim != len(size) + 2 or features.shape[0] != count or features.shape[2:] != size:
+    same = features.ndim == len(size) + 1 and kind != "poses"  # in each pose
+    if same:
+        features = features[np.newaxis]
+    rows = 1 if same else count
+    if features.ndim != len(size) + 2 or features.shape[0] != rows or features.shape[2:] != size:
         wanted = ", ".join(str(n) for n in (count, "k", *size))
         shape = np.shape(array)
         raise KinecalError(f"{kind}['{sensor}']: has shape {shape}; ({wanted}) is expected")
@@ -270,7 +291,7 @@ def _features(array: ArrayLike, kind: str, sensor: str, count: int) -> Array:
         raise KinecalError(f"{kind}['{sensor}']:{row + 1}: is infinite; NaN means not seen")
     if kind == "poses":
         _check_rotations(features, sensor)
-    return np.ascontiguousarray(features)
+    return features
 
 
 def _check_rotations(poses: Array, sensor: str) -> None:
@@ -285,14 +306,19 @@ def _check_rotations(poses: Array, sensor: str) -> None:
 
 
 def _sensor(
-    sensor: str, frame: str, features: Array, ids: Sequence[int] | None
+    sensor: str,
+    frame: str,
+    features: Array,
+    ids: Sequence[int] | None,
+    camera: str | os.PathLike[str] | Mapping[str, Any] | None,
 ) -> _kinecal.SensorArray:
     numbers = [] if ids is None else [int(i) for i in ids]
     if ids is not None and len(numbers) != features.shape[1]:
         raise KinecalError(f"ids['{sensor}']: {len(numbers)} for {features.shape[1]} features")
     if len(set(numbers)) != len(numbers):
         raise KinecalError(f"ids['{sensor}']: the same id twice")
-    return _kinecal.SensorArray(sensor, frame, features, numbers)
+    intrinsics = None if camera is None else _camera(sensor, camera)
+    return _kinecal.SensorArray(sensor, frame, features, numbers, intrinsics)
 
 
 def _padded(rows: list[Mapping[str, Any]], kind: str) -> dict[str, Array]:
