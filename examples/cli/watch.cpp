@@ -7,7 +7,9 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <new>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <thread>
 
 #include "commands.hpp"
@@ -93,6 +95,8 @@ void verify(const StoredResult& result, const RecordingFiles& files, const Watch
       recording.changes.push_back(watched(mover, fresh.problem().table()));
     }
   } catch (const std::exception& error) {
+    recording.may_pass = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+                         dynamic_cast<const std::system_error*>(&error) != nullptr;
     refuse(recording, error.what());
   }
 }
@@ -184,8 +188,9 @@ class Watch {
   ResultInForce& result_of(const WatchedRobot& robot) {
     const std::filesystem::path report = std::filesystem::path(robot.result) / "report.json";
     const std::string file = report.string();
+    std::error_code error;
     const std::string checksum =
-        std::filesystem::exists(report) ? sha256_of_files({&file, 1}) : std::string();
+        std::filesystem::exists(report, error) ? sha256_of_files({&file, 1}) : std::string();
     ResultInForce& known = results_[robot.name];
     if (!checksum.empty() && known.checksum == checksum) return known;
     known = {};
@@ -238,6 +243,7 @@ class Watch {
       recording.checksum = sha256_of_files(files.files);
     } catch (const InputError& error) {
       recording.checksum = sha256_text(error.what());
+      recording.may_pass = true;  // it cannot be read
       return refuse(recording, error.what());
     }
     const auto same = history_.with_content(recording.checksum);
@@ -268,7 +274,12 @@ class Watch {
       }
       if (mover != nullptr) {
         of.mover = mover_name(result, mover->owner, mover->is_frame);
-        if (std::isfinite(of.limit) && of.limit > 0.0) limits.size = size_of(result, *mover);
+      }
+      if (const WatchedChange* moved = of.finding.moved) {
+        of.moved = mover_name(result, moved->owner, moved->is_frame);
+      }
+      if (std::isfinite(of.limit) && of.limit > 0.0) {
+        limits.size = [&](const WatchedChange& changed) { return size_of(result, changed); };
       }
       limits.limit = of.limit;
       of.decision = decide(of.finding, limits);

@@ -72,6 +72,28 @@ std::string size_text(const SeenRobot& robot) {
   return text;
 }
 
+/// True if what explains the last recording is what drifts, or cannot be told from it.
+bool is_of_drift(const RobotFinding& of) {
+  if (!of.drift || of.moved == nullptr) return false;
+  const std::vector<std::string>& alike = of.drift->alike;
+  return of.moved->is_of(of.drift->of) ||
+         std::find(alike.begin(), alike.end(), of.moved->owner) != alike.end();
+}
+
+/// What has moved in the last recording.
+/// @param on  its day
+std::string moved_text(const SeenRobot& robot, const std::string& on) {
+  const RobotFinding& of = robot.finding;
+  if (of.moved != nullptr) {
+    return fmt::format("{} has moved by {} ({} among all robots, {})", robot.moved,
+                       change_text(moved_by(*of.moved)), chance_text(of.probability), on);
+  }
+  return fmt::format(
+      "'{}'{} does not fit, and nothing that moved alone explains it ({} among all robots, {})",
+      of.last->name, of.last->reason.empty() ? "" : ": " + of.last->reason,
+      chance_text(of.probability), on);
+}
+
 /// Why the robot is in its state.
 std::string why(const SeenRobot& robot) {
   if (!robot.fault.empty()) return robot.fault;
@@ -90,16 +112,11 @@ std::string why(const SeenRobot& robot) {
         fmt::format("{}{} drifts by {} ({} among all robots, {})", robot.mover, alike,
                     change_text(weekly(*of.drift), " a week"), chance_text(of.drift->probability),
                     counted(static_cast<std::size_t>(of.drift->line.recordings), "recording"));
-  } else if (of.has_moved && of.moved != nullptr) {
-    text = fmt::format("{} has moved by {} ({} among all robots, {})", robot.mover,
-                       change_text(moved_by(*of.moved)), chance_text(of.probability), on);
-  } else if (of.has_moved) {
-    text = fmt::format(
-        "{}{} does not fit, and nothing that moved alone explains it ({} among all robots, "
-        "{})",
-        "'" + of.last->name + "'", of.last->reason.empty() ? "" : ": " + of.last->reason,
-        chance_text(of.probability), on);
-  } else {
+  }
+  if (of.has_moved && !is_of_drift(of)) {
+    text += (text.empty() ? "" : "; ") + moved_text(robot, on);
+  }
+  if (!of.drift && !of.has_moved) {
     text = fmt::format("{}, the last on {} ({})",
                        counted(static_cast<std::size_t>(of.usable), "recording"), on,
                        chance_text(of.last->probability));

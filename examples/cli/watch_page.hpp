@@ -22,6 +22,7 @@ struct SeenRobot {
   std::string what;        ///< the pose that matters: "'tool' in 'tracker_frame'"; empty: not known
   double limit = 0.0;      ///< of its change, metres
   std::string mover;       ///< "joint 'elbow'": what drifts or has moved; empty: nothing alone
+  std::string moved;       ///< what explains the last recording, where something else may drift
   int written = 0;         ///< recordings that are still being written
 };
 

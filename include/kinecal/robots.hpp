@@ -10,3 +10,4 @@
 #include "kinecal/robots/ros_base.hpp"
 #include "kinecal/robots/ros_robot.hpp"
 #include "kinecal/robots/socket/web_socket.hpp"
+#include "kinecal/robots/view_ahead.hpp"

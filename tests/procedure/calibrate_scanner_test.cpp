@@ -144,6 +144,24 @@ TEST(CalibrateLineScanner, LeavesOutWhatIsBehindTheBall) {
   }
 }
 
+/// Steps inherit error blocks: the same block in two of them is one.
+TEST(CalibrateLineScanner, LeavesOutTheBackgroundOnceInSeveralSteps) {
+  const CalibratedRobot calibrated = calibrate_robot(
+      ball_setup(profiles_of({.noise = 5e-5, .table = true}),
+                 ", loss: {type: tukey, scale: 0.0003}}\ncal_steps: {first: {}, second: {}"));
+  ASSERT_TRUE(calibrated.is_usable()) << calibrated.judgement.reasons.front();
+  EXPECT_EQ(std::count_if(calibrated.setup.diagnostics.notes.begin(),
+                          calibrated.setup.diagnostics.notes.end(),
+                          [](const std::string& note) {
+                            return note.find("of 1800 points, ") != std::string::npos;
+                          }),
+            1);
+  for (const int p : calibrated.result.calibrated) {
+    const Parameter& found = calibrated.result.table[p];
+    EXPECT_NEAR(found.value, truth_of(found.name), 5e-4) << found.name;
+  }
+}
+
 TEST(CalibrateLineScanner, RefusesProfilesOfSomethingElse) {
   std::vector<Sample> samples = profiles_of({.noise = 5e-5});
   std::mt19937 engine(3);

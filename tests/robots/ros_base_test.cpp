@@ -119,6 +119,22 @@ TEST_P(RosBaseTest, DoesNotBeginARunForWhichThereIsNoRoom) {
   for (const auto& command : commands()) EXPECT_EQ(command[0], 0.0);
 }
 
+/// A scanner that looks to the left shows no wall ahead; where one looks must be known.
+TEST_P(RosBaseTest, DoesNotBeginARunForWhichNothingShowsWhatIsAhead) {
+  start(R"({"mount": 1.5707963})");
+  EXPECT_EQ(drive(), "");
+  EXPECT_EQ(said_.front(), "no straight runs: there is no scan that shows what is ahead");
+  base_.reset();
+  said_.clear();
+  start(R"({"mount": null})");
+  EXPECT_EQ(drive(), "");
+  EXPECT_EQ(
+      said_.front(),
+      "no straight runs: /tf_static does not say how 'laser_link', the frame of /base_scan, is "
+      "mounted on 'base_link', the frame of the odometry");
+  for (const auto& command : commands()) EXPECT_EQ(command[0], 0.0);
+}
+
 /// What is ahead comes nearer during a run, as a person does who walks in front of the base.
 TEST_P(RosBaseTest, DoesNotGoNearerThanTheLeastRangeInARun) {
   start();

@@ -208,10 +208,11 @@ std::vector<double> leave_out_background(const Robot& robot,
                                          const SolveOptions& solving, Diagnostics& diagnostics) {
   constexpr double kLeast = 1e-7;  // metres
   const std::size_t before = diagnostics.errors.size();
-  std::set<std::string> clouds;  // sensors
+  std::map<std::string, std::string> clouds;  // the block of each sensor, in one step or several
   for (const StepConfig& step : config.steps) {
     for (const BlockConfig& block : step.error_blocks) {
-      if (!detail::is_cloud(block, samples) || clouds.insert(block.models[0]).second) continue;
+      if (!detail::is_cloud(block, samples)) continue;
+      if (clouds.emplace(block.models[0], block.name).first->second == block.name) continue;
       diagnostics.error(
           block.place,
           fmt::format("error block '{}': sensor '{}' has a loss in another block, too, and nothing "
@@ -236,13 +237,16 @@ std::vector<double> leave_out_background(const Robot& robot,
     if (held && held->contains(parameter.name)) at[p] = held->at(parameter.name);
   }
   const std::vector<Sample> given = samples;
+  std::set<std::string> done;  // sensors
   for (std::size_t s = 0; s < config.steps.size(); ++s) {
     for (BlockConfig& block : config.steps[s].error_blocks) {
       if (!detail::is_cloud(block, given)) continue;
       detail::CloudDistances found =
           detail::distances_of(block, *calibration.steps.at(s).problem, at);
-      detail::report(block, found, given, held.has_value(), diagnostics);
-      detail::take_away(block, found, samples);
+      if (done.insert(block.models[0]).second) {  // not again in a later step
+        detail::report(block, found, given, held.has_value(), diagnostics);
+        detail::take_away(block, found, samples);
+      }
       keep_loss(block, std::move(found.all), found.gate, kLeast);
     }
   }

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <thread>
@@ -16,7 +16,9 @@
 #include "kinecal/files/messages/known_definitions.hpp"
 #include "kinecal/files/messages/make.hpp"
 #include "kinecal/files/messages/message_fields.hpp"
+#include "kinecal/geometry/rotation.hpp"
 #include "kinecal/robots/bridge_client.hpp"
+#include "kinecal/robots/view_ahead.hpp"
 
 namespace kinecal {
 
@@ -40,11 +42,13 @@ class RosBase::State {
   std::optional<Ahead> ahead;
 
   [[nodiscard]] const BaseTopics& topics() const { return topics_; }
+  [[nodiscard]] std::string why_nothing_ahead() const { return view_.why_none(frame_); }
 
   void take_all() {
     take(topics_.odom);
     for (const std::string& scan : topics_.scans) take(scan);
     for (const std::string& other : topics_.others) take(other);
+    if (const auto now = view_.ahead(frame_)) ahead = now;
   }
 
  private:
@@ -57,38 +61,30 @@ class RosBase::State {
       record_(topic, message.type,
               std::chrono::duration_cast<std::chrono::nanoseconds>(since).count(), fields);
       if (message.type == "nav_msgs/Odometry") take_odometry(fields, message.arrival);
-      if (message.type == "sensor_msgs/LaserScan") take_scan(fields, message.arrival);
+      if (message.type == "sensor_msgs/LaserScan") view_.take_scan(topic, fields, message.arrival);
+      if (topic == "/tf_static") view_.take_frames(fields);
     }
   }
   void take_odometry(const MessageFields& message, BaseClock::time_point arrival) {
     const auto at = [&](const char* field) {
       return detail::number_at(message, std::string("pose.pose.") + field);
     };
-    const double x = at("orientation.x"), y = at("orientation.y"), z = at("orientation.z"),
-                 w = at("orientation.w");
-    const double yaw = std::atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z);
+    frame_ = detail::text_at(message, "child_frame_id");
+    const Eigen::Vector4d q(at("orientation.x"), at("orientation.y"), at("orientation.z"),
+                            at("orientation.w"));
+    if (!(q.norm() > 0.5) || !std::isfinite(at("position.x") + at("position.y")))
+      return;  // no pose
+    const Matrix3<double> turned = rotation_from_quaternion<double>(q.normalized());
+    const double yaw = std::atan2(turned(1, 0), turned(0, 0));
     const double before = odometry ? odometry->yaw : yaw;
     odometry = {at("position.x"), at("position.y"),
                 before + std::remainder(yaw - before, 2.0 * std::numbers::pi), arrival};
   }
-  void take_scan(const MessageFields& message, BaseClock::time_point arrival) {
-    constexpr double kAhead = 0.5;  // radians
-    double angle = detail::number_at(message, "angle_min");
-    const double step = detail::number_at(message, "angle_increment"),
-                 least = detail::number_at(message, "range_min");
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const MessageValue& item : detail::list_at(message, "ranges")) {
-      item.visit_number([&](auto number) {
-        const auto range = static_cast<double>(number);
-        if (std::abs(angle) <= kAhead && range >= least) nearest = std::min(nearest, range);
-      });
-      angle += step;
-    }
-    ahead = {nearest, arrival};
-  }
 
   BaseTopics topics_;
   RecordMessage record_;
+  detail::ViewAhead view_;
+  std::string frame_;  ///< of the base, by its odometry
 };
 
 RosBase::RosBase(const BridgeOptions& options, const BaseTopics& topics, RecordMessage record)
@@ -115,6 +111,9 @@ const std::optional<RosBase::Odometry>& RosBase::odometry() const {
 }
 const std::optional<RosBase::Ahead>& RosBase::ahead() const {
   return state_->ahead;
+}
+std::string RosBase::why_nothing_ahead() const {
+  return state_->why_nothing_ahead();
 }
 std::string RosBase::why_no_odometry() const {
   return state_->bridge.why_silent(state_->topics().odom);
@@ -144,6 +143,7 @@ namespace detail {
 namespace {
 
 constexpr std::chrono::milliseconds kCommandPeriod{20};
+constexpr double kPeriod = std::chrono::duration<double>(kCommandPeriod).count();  // seconds
 
 /// A turn in place, or a straight run.
 struct DrivenRun {
@@ -189,11 +189,10 @@ class RunDriver {
     const double limit = 3.0 * run.amount / run.speed() + 5.0;  // seconds
     double speed = 0.0;
     std::string why;
-    for (auto last = began; why.empty(); last = BaseClock::now()) {
+    while (why.empty()) {
       if (gone(run) >= run.amount - 0.5 * speed * speed / acceleration) break;
       if (run.ahead > 0.0 && base_.ahead()->nearest < driving_.least_range) break;
-      const double seconds = std::chrono::duration<double>(BaseClock::now() - last).count();
-      speed = std::min(run.speed(), speed + acceleration * std::max(seconds, 0.02));
+      speed = std::min(run.speed(), speed + acceleration * kPeriod);
       base_.command(std::copysign(run.ahead == 0.0 ? 0.0 : speed, run.ahead),
                     std::copysign(run.turn == 0.0 ? 0.0 : speed, run.turn));
       base_.record(kCommandPeriod);
@@ -266,7 +265,7 @@ class RunDriver {
                           "{:.2f} m needs {:.2f} m up to a wall",
                           base.ahead()->nearest, driving.distance,
                           driving.distance + driving.least_range)
-            : "no straight runs: there is no scan that shows what is ahead");
+            : "no straight runs: " + base.why_nothing_ahead());
   }
   double back = 0.0;  // what a run ahead went: the run back goes no farther
   for (DrivenRun& run : runs) {

@@ -47,9 +47,9 @@ class RosBase {
     double x = 0.0, y = 0.0, yaw = 0.0;  ///< metres; radians, without jumps
     std::chrono::steady_clock::time_point arrival;
   };
-  /// What a scan has ahead, within half a radian, and when it came.
+  /// What scans have ahead, within half a radian of the base's x axis, and when the oldest of them came.
   struct Ahead {
-    double nearest = 0.0;  ///< metres; infinite if there is nothing
+    double nearest = 0.0;  ///< metres from the scanner; infinite if there is nothing
     std::chrono::steady_clock::time_point arrival;
   };
 
@@ -68,6 +68,8 @@ class RosBase {
   [[nodiscard]] const std::map<std::string, int>& received() const;
   [[nodiscard]] const std::optional<Odometry>& odometry() const;  ///< the newest
   [[nodiscard]] const std::optional<Ahead>& ahead() const;        ///< the newest
+  /// Why nothing is known of what is ahead, such as a scanner whose mount is not in /tf_static.
+  [[nodiscard]] std::string why_nothing_ahead() const;
   /// Why there is no odometry.
   [[nodiscard]] std::string why_no_odometry() const;
 
@@ -98,8 +100,8 @@ struct BaseDriving {
   std::chrono::milliseconds silence{500};
 };
 
-/// Drives a full turn in both directions at two speeds; and, if there is a scan with room ahead, a straight run ahead and back
-/// at two speeds.  Records meanwhile.
+/// Drives a full turn in both directions at two speeds; and, if a scanner with a known mount shows a wall ahead and room before
+/// it, a straight run ahead and back at two speeds.  Records meanwhile.
 /// @param is_interrupted  asked all the time
 /// @param say             receives what is being done, one line each
 /// @returns  why it ended early; empty if it did not

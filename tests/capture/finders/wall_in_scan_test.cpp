@@ -52,6 +52,20 @@ TEST(WallInScan, IsFoundWithNoise) {
   }
 }
 
+/// A scanner that counts its angles from 0 to a full turn sees the same.
+TEST(WallInScan, IsFoundWhereAnglesAreOfAFullTurn) {
+  constexpr double kStep = std::numbers::pi / 360.0;
+  std::vector<double> ranges(720, kFar);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const double ahead = std::cos(kStep * static_cast<double>(i));
+    if (ahead > 0.1) ranges[i] = 2.5 / ahead;
+  }
+  const FoundWall found = wall_in_scan({ranges, 0.0, kStep, 0.05, 30.0});
+  ASSERT_TRUE(found.wall) << found.refusal;
+  EXPECT_NEAR(found.wall->angle, 0.0, 1e-6);
+  EXPECT_EQ(found.wall->points, 115) << "of both sides: 57 to either, and the one ahead";
+}
+
 /// What stands before it, what is behind a door, what was not measured.
 TEST(WallInScan, IsFoundBehindOtherThings) {
   Scan scan;

@@ -72,5 +72,32 @@ TEST(PointFile, RefusesWhatIsDamagedOrCompressed) {
   EXPECT_THAT(error("ply\nelement face 1\nend_header\n"), HasSubstr("'vertex', must be first"));
 }
 
+/// A header that promises more than there is takes no memory.
+TEST(PointFile, RefusesPointsWithoutNumbers) {
+  const auto error = [](const std::string& content) {
+    return error_of([&] { (void)point_file_table(content, "a.ply"); });
+  };
+  EXPECT_THAT(error("ply\nformat ascii 1.0\nelement vertex 999999999999\nend_header\n"),
+              HasSubstr("a.ply: its points have no field of one number"));
+  EXPECT_THAT(error("VERSION 0.7\nFIELDS x\nSIZE 4\nTYPE F\nCOUNT 0\nPOINTS 999999999999\n"
+                    "DATA ascii\n"),
+              HasSubstr("its points have no field of one number"));
+}
+
+TEST(PointFile, RefusesNumbersThatItDoesNotKnow) {
+  const auto error = [](std::string content, const std::string& from, const std::string& to) {
+    content.replace(content.find(from), from.size(), to);
+    return error_of([&] { (void)point_file_table(content, "a.ply"); });
+  };
+  EXPECT_THAT(error(ply("ascii"), "property uchar i", "property list uchar int near"),
+              HasSubstr("property 'near' of vertex is a list, which is not read"));
+  EXPECT_THAT(error(ply("binary_middle_endian"), "x", "x"),
+              HasSubstr("its format is 'binary_middle_endian', which is not read"));
+  EXPECT_THAT(error(pcd("binary"), "TYPE F", "TYPE C"), HasSubstr("has the TYPE 'C'"));
+  EXPECT_THAT(error(pcd("binary"), "SIZE 4", "SIZE 2"),
+              HasSubstr("its field 'x' has floating-point numbers of 2 bytes"));
+  EXPECT_THAT(error(pcd("binary"), "SIZE 4", "SIZE 0"), HasSubstr("numbers of 0 bytes"));
+}
+
 }  // namespace
 }  // namespace kinecal::detail

@@ -19,9 +19,10 @@ using testing::HasSubstr;
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-MessageFields scan(const std::vector<double>& ranges, double step = -0.5, double most = 10.0) {
-  return fields("angle_min", 1.0, "angle_increment", step, "time_increment", 1e-3, "range_min", 0.5,
-                "range_max", most, "ranges", numbers(ranges));
+MessageFields scan(const std::vector<double>& ranges, double step = -0.5, double most = 10.0,
+                   double time_step = 1e-3) {
+  return fields("angle_min", 1.0, "angle_increment", step, "time_increment", time_step, "range_min",
+                0.5, "range_max", most, "ranges", numbers(ranges));
 }
 
 TEST(ScanMessage, BeamsWithoutARangeThatCountsAreNoPoints) {
@@ -36,6 +37,12 @@ TEST(ScanMessage, BeamsWithoutARangeThatCountsAreNoPoints) {
   EXPECT_EQ(view.points(0, 0), at(2.0, 1.0));
   EXPECT_EQ(view.points(2, 0), at(3.0, 0.0)) << "a scanner that turns clockwise";
   for (const int i : {1, 3, 4, 5, 6, 7}) EXPECT_TRUE(std::isnan(view.points(i, 0).x())) << i;
+}
+
+TEST(ScanMessage, AnAbsurdTimeBetweenBeamsIsUnknown) {
+  for (const double absurd : {kInf, kNaN, -1.0, 1e300}) {
+    EXPECT_EQ(scan_of(scan({1.0, 2.0}, -0.5, 10.0, absurd)).time_step, 0.0) << absurd;
+  }
 }
 
 TEST(ScanMessage, WhatCannotBeAScanIsRefused) {

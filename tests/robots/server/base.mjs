@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 export class Base {
-  /** wall: where it is ahead, metres; turns: odometry over truth; timeout: of commands, seconds; stuck: it does not move */
+  /** wall: where it is ahead, metres; mount: direction of the scanner's x axis, radians, or null: not known; turns: odometry over truth; timeout: of commands, seconds; stuck: it does not move */
   constructor(options, now) {
-    Object.assign(this, { wall: 3, turns: 1, timeout: 0.25, stuck: false, ...options });
+    Object.assign(this, { wall: 3, mount: 0, turns: 1, timeout: 0.25, stuck: false, ...options });
     Object.assign(this, { x: 0, y: 0, yaw: 0, ahead: 0, turn: 0, now, commanded: now, commands: [] });
   }
 
@@ -44,9 +44,17 @@ export class Base {
     };
   }
 
+  /** As transforms of /tf_static. */
+  mounts(header) {
+    if (this.mount === null) return [];
+    const rotation = { x: 0, y: 0, z: Math.sin(0.5 * this.mount), w: Math.cos(0.5 * this.mount) };
+    const translation = { x: 0.2, y: 0, z: 0.3 };
+    return [{ header, child_frame_id: "laser_link", transform: { translation, rotation } }];
+  }
+
   scan() {
     const ranges = [...Array(201).keys()].map((i) => {
-      const ahead = Math.cos(this.yaw + 0.01 * (i - 100));
+      const ahead = Math.cos(this.yaw + (this.mount ?? 0) + 0.01 * (i - 100));
       return ahead > 0.05 ? (this.wall - this.x) / ahead : Infinity;
     });
     return {

@@ -47,6 +47,11 @@ const types = {
   "geometry_msgs/PoseWithCovariance": () => "geometry_msgs/Pose pose\nfloat64[36] covariance",
   "geometry_msgs/Twist": () => "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular",
   "geometry_msgs/TwistWithCovariance": () => "geometry_msgs/Twist twist\nfloat64[36] covariance",
+  "geometry_msgs/Transform": () =>
+    "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation",
+  "geometry_msgs/TransformStamped": () =>
+    "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform",
+  "tf2_msgs/TFMessage": () => "geometry_msgs/TransformStamped[] transforms",
   "nav_msgs/Odometry": () =>
     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n" +
     "geometry_msgs/TwistWithCovariance twist",

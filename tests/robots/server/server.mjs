@@ -199,6 +199,8 @@ if (options.base) {
   base = new Base(options.base, seconds());
   const odom = topic("/odom", "nav_msgs/Odometry");
   const imu = topic("/imu", "sensor_msgs/Imu");
+  const frames = topic("/tf_static", "tf2_msgs/TFMessage");
+  server.on("subscribe", () => frames({ transforms: base.mounts(header(seconds(), "base_link")) }));
   const read = reader("geometry_msgs/Twist", ros2);
   actions.set("/cmd_vel", (data) => base.command(read.readMessage(data), seconds()));
   setInterval(() => {

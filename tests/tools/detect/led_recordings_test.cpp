@@ -36,6 +36,17 @@ TEST(LedCommands, SpansAreWithoutTheTimeThatASwitchTakes) {
   EXPECT_EQ(spans[2].time.end, at(2000));
 }
 
+TEST(LedCommands, BeforeTheFirstOneLedsAreDarkOnlyIfTheyNeverAreLater) {
+  const Standstill time{at(0), at(1000)};
+  const auto cycle = led_spans({{at(300), 0}, {at(600), 4}}, time, milliseconds(50));
+  ASSERT_EQ(cycle.size(), 2u) << "the recording may have begun with an LED on";
+  EXPECT_EQ(cycle[0].time.begin, at(350));
+  const auto lit = led_spans({{at(300), 4}, {at(600), 8}}, time, milliseconds(50));
+  ASSERT_EQ(lit.size(), 3u);
+  EXPECT_EQ(lit[0].code, 0);
+  EXPECT_EQ(lit[0].time.end, at(300));
+}
+
 TEST(LedCommands, ACodeIsOneOfTheFields) {
   using detail::fields;
   EXPECT_EQ(led_code(fields("goal", fields("led_code", std::int64_t{8}))), 8);
@@ -125,6 +136,15 @@ TEST_F(LedRecordings, ByATopicOrATable) {
   record("/which", "std_msgs/UInt8", true);
   expect_all(detect("which"));
   expect_all(detect((folder_ / "led.csv").string()));
+}
+
+TEST_F(LedRecordings, ATableHasCodesOfSixteenBits) {
+  for (const char* code : {"65536", "1e300", "inf", "-1", "1.5"}) {
+    write("led.csv", std::string("time,code\n1,") + code + "\n");
+    found_ = {};
+    EXPECT_THAT(read_led_table((folder_ / "led.csv").string(), found_), IsEmpty()) << code;
+    EXPECT_THAT(found_.errors, ElementsAre(HasSubstr("led.csv:2: time and code of LEDs"))) << code;
+  }
 }
 
 TEST_F(LedRecordings, WithoutCommandsSayWhatIsMissing) {

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <random>
 
 #include "kinecal/files/diagnostics.hpp"
@@ -64,6 +66,28 @@ TEST_F(FleetFolder, HasRecordingsButNotWhatIsBesideThem) {
   EXPECT_TRUE(is_settled(found[0], now + 61'000'000'000, 60.0));
   EXPECT_FALSE(is_settled(found[4], now + 61'000'000'000, 60.0)) << "it has a journal";
   EXPECT_TRUE(recordings_in((folder_ / "none").string()).empty());
+}
+
+TEST_F(FleetFolder, PassesOverWhatCannotBeLookedAt) {
+  file("arm/result/report.json");
+  std::filesystem::create_symlink("loop", folder_ / "loop");
+  const std::vector<WatchedRobot> robots = robots_in(folder_.string());
+  ASSERT_EQ(robots.size(), 1u);
+  EXPECT_EQ(robots[0].name, "arm");
+  EXPECT_THAT(test::thrown<InputError>([&] { (void)robots_in((folder_ / "loop").string()); }),
+              HasSubstr("is not a folder"));
+}
+
+TEST_F(FleetFolder, WaitsForAFileThatIsDatedAhead) {
+  file("r/a.yaml");
+  std::filesystem::last_write_time(
+      folder_ / "r" / "a.yaml",
+      std::filesystem::file_time_type::clock::now() + std::chrono::hours(24));
+  const std::vector<RecordingFiles> found = recordings_in((folder_ / "r").string());
+  ASSERT_EQ(found.size(), 1u);
+  const std::int64_t now = file_time_now();
+  EXPECT_FALSE(is_settled(found[0], now, 60.0)) << "it was changed just now";
+  EXPECT_TRUE(is_settled(found[0], now + 61'000'000'000, 60.0));
 }
 
 TEST(Fleet, KnowsARobotByItsStructure) {
@@ -128,12 +152,65 @@ TEST(Fleet, FindsTheOneOfFiftyRobotsThatDriftsAndNoOther) {
   EXPECT_EQ(found[17].moved->owner, "elbow");
 }
 
+/// The tool is half a metre from each joint.
+std::optional<ChangeSize> half_a_metre(const WatchedChange&) {
+  return ChangeSize{{0.25}};
+}
+
+/// A slow drift does not hide that something else has slipped.
+TEST(Fleet, MeasuresWhatDriftsAndWhatHasMovedEachByItself) {
+  std::vector<RobotHistory> robots = fleet(5, 28, 1, 2);
+  WatchedRecording& last = robots[1].recordings.back();
+  last.state = RecordingState::does_not_hold;
+  last.probability = 1e-12;
+  last.changes.push_back({"shoulder", false, {"shoulder"}, {"rad"}, {1e-2}, {2.5e-7}, 20.0, true});
+  const RobotFinding found = judge_fleet(robots)[1];
+  ASSERT_TRUE(found.drift);
+  EXPECT_EQ(found.drift->of.owner, "elbow");
+  ASSERT_NE(found.moved, nullptr);
+  EXPECT_EQ(found.moved->owner, "shoulder");
+  WatchLimits limits{.size = half_a_metre, .limit = 4e-3, .now = 1.7e9 + 28.0 * kDay};
+  const RobotDecision decision = decide(found, limits);
+  EXPECT_EQ(decision.state, FleetState::recalibrate);
+  EXPECT_NEAR(decision.change.value(), 5e-3, 1e-9) << "of the shoulder";
+  limits.limit = 6e-3;
+  EXPECT_EQ(decide(found, limits).state, FleetState::drifts);
+  limits.size = [](const WatchedChange& of) {
+    return of.owner == "elbow" ? half_a_metre(of) : std::nullopt;
+  };
+  EXPECT_EQ(decide(found, limits).state, FleetState::recalibrate) << "an unknown size matters";
+  last.changes.clear();
+  limits.size = half_a_metre;
+  const RobotFinding nothing_alone = judge_fleet(robots)[1];
+  ASSERT_TRUE(nothing_alone.drift);
+  EXPECT_EQ(decide(nothing_alone, limits).state, FleetState::recalibrate);
+}
+
+/// A mover of every fifth recording has a fifth of their residuals, and explains less.
+TEST(Fleet, ComparesMoversThatAreInDifferentRecordings) {
+  std::vector<RobotHistory> robots = fleet(1, 100, 0, 4);
+  for (std::size_t night = 0; night < 100; ++night) {
+    WatchedRecording& recording = robots[0].recordings[night];
+    const double drift = recording.changes[1].change[0];
+    recording.statistic = 30.0 + std::pow(drift / 5e-4, 2);
+    WatchedChange& seldom = recording.changes[0];
+    seldom.owner = "shoulder";
+    seldom.change = {drift};
+    seldom.score = 32.0 + 0.25 * std::pow(drift / 5e-4, 2);
+    if (night % 5 != 0) recording.changes.erase(recording.changes.begin());
+  }
+  const std::vector<RobotFinding> found = judge_fleet(robots);
+  ASSERT_TRUE(found[0].drift);
+  EXPECT_EQ(found[0].drift->of.owner, "elbow");
+  EXPECT_TRUE(found[0].drift->alike.empty());
+}
+
 TEST(Fleet, SaysWhenTheLimitIsReached) {
   const std::vector<RobotHistory> robots = fleet(5, 28, 1, 2);
   const std::vector<RobotFinding> found = judge_fleet(robots);
   ASSERT_TRUE(found[1].drift);
   WatchLimits limits{
-      .size = ChangeSize{{0.25}}, .limit = 4e-3, .now = 1.7e9 + 28.0 * kDay, .ahead = 7.0 * kDay};
+      .size = half_a_metre, .limit = 4e-3, .now = 1.7e9 + 28.0 * kDay, .ahead = 7.0 * kDay};
   const RobotDecision later = decide(found[1], limits);  // 8e-3 rad: nine weeks, in about five
   ASSERT_TRUE(later.passes);
   EXPECT_NEAR(later.passes->time, 1.7e9 + 8e-3 / (0.05 * kDegree) * kWeek,

@@ -119,6 +119,30 @@ TEST_F(HistoryTest, ReplacesARefusedFileThatChanged) {
   EXPECT_EQ(history.recordings(epoch)[0].state, RecordingState::holds);
 }
 
+/// A mesh was missing, memory was short: a new start may read it.
+TEST_F(HistoryTest, LooksAgainAtWhatWasRefused) {
+  WatchedRecording refused{
+      .name = "a", .checksum = "1", .size = 3, .modified = 1, .reason = "a mesh is missing"};
+  const WatchedRecording good = recording("b", 10.0);
+  std::int64_t epoch = 0;
+  {
+    History history(file_);
+    epoch = history.epoch("arm", "s", "r");
+    history.add(epoch, std::vector{refused, good});
+    EXPECT_TRUE(history.knows(epoch, refused));
+  }
+  History history(file_);
+  EXPECT_FALSE(history.knows(epoch, refused));
+  EXPECT_TRUE(history.knows(epoch, good));
+  EXPECT_TRUE(history.knows(history.epoch("arm", "s", "later"), refused)) << "of an earlier result";
+  history.add(epoch, std::vector{refused});
+  EXPECT_TRUE(history.knows(epoch, refused)) << "once is enough";
+  EXPECT_EQ(history.recordings(epoch).size(), 2u);
+  refused.may_pass = true;
+  history.add(epoch, std::vector{refused});
+  EXPECT_FALSE(history.knows(epoch, refused)) << "it is tried at the next look";
+}
+
 TEST_F(HistoryTest, IsNotThatOfAnotherRobot) {
   History history(file_);
   (void)history.epoch("arm", "six joints", "r");

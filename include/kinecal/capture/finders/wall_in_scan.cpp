@@ -74,15 +74,15 @@ struct Line {
 
 /// Points in the window, in the frame of the scanner.
 [[nodiscard]] Points points_of(const ScanRanges& scan, const WallWindow& window) {
+  const double middle = 0.5 * (window.min_angle + window.max_angle),
+               half = 0.5 * (window.max_angle - window.min_angle);
   Points points;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
-    const double angle = scan.first_angle + static_cast<double>(i) * scan.step,
-                 range = scan.ranges[i];
-    if (angle < window.min_angle || angle > window.max_angle || !std::isfinite(range) ||
-        range < scan.least || range > scan.most || range <= 0.0) {
-      continue;
+    const double angle = scan.angle(i), range = scan.ranges[i];
+    const bool is_within = std::abs(std::remainder(angle - middle, 2.0 * std::numbers::pi)) <= half;
+    if (is_within && scan.counts(i)) {
+      points.emplace_back(range * std::cos(angle), range * std::sin(angle));
     }
-    points.emplace_back(range * std::cos(angle), range * std::sin(angle));
   }
   return points;
 }

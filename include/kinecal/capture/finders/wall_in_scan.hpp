@@ -6,6 +6,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,6 +21,16 @@ struct ScanRanges {
   double step = 0.0;         ///< between two of them, radians
   double least = 0.0;        ///< the shortest range that counts, metres
   double most = 100.0;       ///< the longest range that counts, metres
+
+  /// The direction of a range, radians, to the left of the scanner's x axis; not within any turn.
+  [[nodiscard]] double angle(std::size_t i) const {
+    return first_angle + static_cast<double>(i) * step;
+  }
+  /// True if something was hit within the ranges that count.
+  [[nodiscard]] bool counts(std::size_t i) const {
+    const double range = ranges[i];
+    return std::isfinite(range) && range > 0.0 && range >= least && range <= most;
+  }
 };
 
 /// Where a wall is looked for, and what counts as one.

@@ -52,6 +52,30 @@ struct PointHeader {
                            printable(type) + "', which is not read");
 }
 
+/// Of PCD: I, U or F.
+[[nodiscard]] char pcd_kind(const std::string& type) {
+  if (type == "F" || type == "I" || type == "U") return type == "F" ? 'f' : type == "I" ? 'i' : 'u';
+  throw std::runtime_error("its header has the TYPE '" + printable(type) +
+                           "'; that of a field is I, U or F");
+}
+
+/// Checks that there is something to read, and that numbers have sizes that exist.
+void check_properties(const PointHeader& header) {
+  bool has_numbers = false;
+  for (const PointProperty& property : header.properties) {
+    const std::size_t bytes = property.bytes;
+    const bool is_size =
+        bytes == 4 || bytes == 8 || (property.kind != 'f' && (bytes == 1 || bytes == 2));
+    if (!is_size) {
+      throw std::runtime_error(fmt::format(
+          "its field '{}' has {} of {}, which is not read", printable(property.name),
+          property.kind == 'f' ? "floating-point numbers" : "numbers", byte_count(bytes)));
+    }
+    has_numbers = has_numbers || property.count == 1;
+  }
+  if (!has_numbers) throw std::runtime_error("its points have no field of one number, such as x");
+}
+
 /// The lines of a header, each with the size of the file up to its end.
 class HeaderLines {
  public:
@@ -92,7 +116,12 @@ class HeaderLines {
     if (words[0] == "end_header") break;
     if (words[0] == "format" && words.size() > 1) {
       header.is_text = words[1] == "ascii";
-      if (words[1] == "binary_big_endian") header.order = std::endian::big;
+      if (words[1] == "binary_big_endian") {
+        header.order = std::endian::big;
+      } else if (!header.is_text && words[1] != "binary_little_endian") {
+        throw std::runtime_error("its format is '" + printable(words[1]) +
+                                 "', which is not read; save it as binary_little_endian or ascii");
+      }
     } else if (words[0] == "element" && words.size() > 2) {
       if (element.empty() && words[1] != "vertex") {
         throw std::runtime_error("its first element is '" + printable(words[1]) +
@@ -101,6 +130,10 @@ class HeaderLines {
       element = words[1];
       if (element == "vertex") header.points = count_of(words[2]);
     } else if (words[0] == "property" && element == "vertex" && words.size() > 2) {
+      if (words[1] == "list") {
+        throw std::runtime_error("property '" + printable(words.back()) +
+                                 "' of vertex is a list, which is not read; save it without");
+      }
       header.properties.push_back(ply_property(words[1], words[2]));
     }
   }
@@ -128,9 +161,7 @@ class HeaderLines {
     } else if (words[0] == "COUNT") {
       each([](PointProperty& p, const std::string& word) { p.count = count_of(word); });
     } else if (words[0] == "TYPE") {
-      each([](PointProperty& p, const std::string& word) {
-        p.kind = word == "F" ? 'f' : word == "U" ? 'u' : 'i';
-      });
+      each([](PointProperty& p, const std::string& word) { p.kind = pcd_kind(word); });
     } else if (words[0] == "POINTS" && words.size() > 1) {
       header.points = count_of(words[1]);
     } else if (words[0] == "DATA" && words.size() > 1) {
@@ -162,13 +193,10 @@ template <class I>
       return property.kind == 'f' ? text_of<float>(bytes)
              : is_signed          ? text_of<std::int32_t>(bytes)
                                   : text_of<std::uint32_t>(bytes);
-    case 8:
+    default:  // 8, see check_properties()
       return property.kind == 'f' ? text_of<double>(bytes)
              : is_signed          ? text_of<std::int64_t>(bytes)
                                   : text_of<std::uint64_t>(bytes);
-    default:
-      throw std::runtime_error(fmt::format("its field '{}' has numbers of {}",
-                                           printable(property.name), byte_count(property.bytes)));
   }
 }
 
@@ -209,6 +237,7 @@ std::optional<std::string> point_file_table(std::string_view content, const std:
   try {
     HeaderLines lines(content);
     const PointHeader header = is_ply ? ply_header(lines) : pcd_header(lines);
+    check_properties(header);
     std::string table;
     for (const PointProperty& property : header.properties) {
       if (property.count == 1) table += (table.empty() ? "" : ",") + property.name;

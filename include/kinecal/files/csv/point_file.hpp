@@ -1,7 +1,7 @@
 // Files of points, PLY and PCD, as tables: a column for each property, a row for each point.
 //
-// Of PLY, the element vertex is read (ascii, binary of either byte order); of PCD, ascii and binary.  Properties that are lists or
-// have several numbers are left out.
+// Of PLY, the element vertex is read (ascii, binary of either byte order); of PCD, ascii and binary.  Fields of several numbers are
+// left out; a vertex with lists is refused.
 // Source: G. Turk, The PLY polygon file format, 1994; documentation of the Point Cloud Library, "The PCD file format".
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -13,6 +13,7 @@
 namespace kinecal::detail {
 
 LaserScan scan_of(const MessageFields& message) {
+  constexpr double kLongest = 60.0;  // seconds of a scan: beyond, the time step has another unit
   LaserScan scan;
   for (const MessageValue& range : list_at(message, "ranges")) {
     range.visit_number([&](auto x) { scan.ranges.push_back(static_cast<double>(x)); });
@@ -34,18 +35,17 @@ LaserScan scan_of(const MessageFields& message) {
         "no range of the scan can count: its range_max, {} m, is not above its range_min, {} m",
         scan.most, scan.least));
   }
-  if (!(scan.time_step > 0.0)) scan.time_step = 0.0;
+  const double time = scan.time_step * static_cast<double>(scan.ranges.size());
+  if (!(scan.time_step > 0.0) || !(time <= kLongest)) scan.time_step = 0.0;
   return scan;
 }
 
 PointCloud points_of(const LaserScan& scan) {
   PointCloud points(static_cast<int>(scan.ranges.size()), 1, no_point());
+  const ScanRanges beams = scan.view();
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
-    const double range = scan.ranges[i];
-    const bool counts =
-        std::isfinite(range) && range > 0.0 && range >= scan.least && range <= scan.most;
-    if (!counts) continue;
-    const double angle = scan.first_angle + static_cast<double>(i) * scan.step;
+    if (!beams.counts(i)) continue;
+    const double range = scan.ranges[i], angle = beams.angle(i);
     points.pixels[i] =
         Vector3<double>(range * std::cos(angle), range * std::sin(angle), 0.0).cast<float>();
   }

@@ -21,7 +21,7 @@ struct LaserScan {
   double step = 0.0;           ///< between two beams, radians
   double least = 0.0;          ///< the shortest range that counts, metres
   double most = 0.0;           ///< the longest range that counts, metres
-  double time_step = 0.0;      ///< between two beams, seconds; zero: unknown
+  double time_step = 0.0;      ///< between two beams, seconds; zero: unknown, or absurd
 
   /// Its ranges, which live as long as this.
   [[nodiscard]] ScanRanges view() const { return {ranges, first_angle, step, least, most}; }

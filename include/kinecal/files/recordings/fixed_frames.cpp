@@ -42,6 +42,16 @@ void FixedFrames::add(const std::string& parent, const std::string& child,
   known.moves = known.moves || !is_same;
 }
 
+void FixedFrames::add(const MessageFields& message) {
+  for (const MessageValue& item : detail::list_at(message, "transforms")) {
+    const auto* stamped = item.as<MessageFields>();
+    const auto pose = stamped != nullptr ? transform_of(*stamped) : std::nullopt;
+    if (!pose) continue;
+    add(std::string(detail::text_at(*stamped, "header.frame_id")),
+        std::string(detail::text_at(*stamped, "child_frame_id")), *pose);
+  }
+}
+
 void FixedFrames::add(const Robot& robot) {
   for (const Joint& joint : robot.joints()) {
     if (joint.type != JointType::fixed) continue;
@@ -90,13 +100,7 @@ FixedFrames recorded_frames(const std::string& path) {
       }
       return;
     }
-    for (const MessageValue& item : detail::list_at(*content, "transforms")) {
-      const auto* stamped = item.as<MessageFields>();
-      const auto pose = stamped != nullptr ? transform_of(*stamped) : std::nullopt;
-      if (!pose) continue;
-      frames.add(std::string(detail::text_at(*stamped, "header.frame_id")),
-                 std::string(detail::text_at(*stamped, "child_frame_id")), *pose);
-    }
+    frames.add(*content);
   };
   read_bag(path, {wants, handle}, ignored);
   if (robot) frames.add(*robot);

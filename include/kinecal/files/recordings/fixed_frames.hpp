@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "kinecal/files/messages/value.hpp"
 #include "kinecal/geometry/pose.hpp"
 #include "kinecal/kinematics/robot.hpp"
 
@@ -17,6 +18,9 @@ class FixedFrames {
   /// Adds a transform of tf.  One that changes later, or gets another parent, is not fixed.
   /// @param pose  parent_T_child, metres
   void add(const std::string& parent, const std::string& child, const Pose<double>& pose);
+
+  /// Adds the transforms of a message of tf: tf2_msgs/TFMessage.  What cannot be read is left out.
+  void add(const MessageFields& message);
 
   /// Adds the fixed joints of a robot, except of links that tf has.
   void add(const Robot& robot);

@@ -17,6 +17,15 @@
 
 namespace kinecal {
 
+namespace {
+
+[[nodiscard]] bool is_code(double number) {
+  constexpr double kMost = 65535.0;
+  return number >= 0.0 && number <= kMost && number == std::floor(number);
+}
+
+}  // namespace
+
 bool is_led_table(const std::string& given) {
   const std::string ending = std::filesystem::path(given).extension().string();
   return ending == ".csv" || ending == ".tsv" || ending == ".txt";
@@ -33,8 +42,7 @@ std::optional<int> led_code(const MessageFields& message) {
     const MessageValue* found = detail::field_at(message, path);
     double code = std::numeric_limits<double>::quiet_NaN();
     if (found != nullptr) found->visit_number([&](auto x) { code = static_cast<double>(x); });
-    constexpr double kMost = 65535.0;
-    if (code >= 0.0 && code <= kMost && code == std::floor(code)) return static_cast<int>(code);
+    if (is_code(code)) return static_cast<int>(code);
   }
   return std::nullopt;
 }
@@ -59,9 +67,9 @@ std::vector<LedCommand> read_led_table(const std::string& path, Diagnostics& dia
       return c < row.cells.size() ? detail::csv_number(row.cells[c]) : std::nullopt;
     };
     const auto at = number(time), lit = number(code);
-    if (!at || !lit || !(std::abs(*at) < 9e9) || *lit < 0.0 || *lit != std::floor(*lit)) {
+    if (!at || !lit || !(std::abs(*at) < 9e9) || !is_code(*lit)) {
       diagnostics.error({path, row.line},
-                        "time and code of LEDs are a number of seconds and 0, 1, 2 ...");
+                        "time and code of LEDs are a number of seconds and 0, 1, 2 ... 65535");
       continue;
     }
     commands.push_back({Stamp(std::llround(1e9 * *at)), static_cast<int>(*lit)});
@@ -85,7 +93,9 @@ std::vector<LedSpan> led_spans(const std::vector<LedCommand>& commands, const St
     }
   };
   if (commands.empty()) return spans;
-  add(0, time.begin, commands.front().time);  // nothing was switched on yet
+  const bool is_dark_later = std::any_of(commands.begin(), commands.end(),
+                                         [](const LedCommand& of) { return of.code == 0; });
+  if (!is_dark_later) add(0, time.begin, commands.front().time);
   for (std::size_t i = 0; i < commands.size(); ++i) {
     add(commands[i].code, commands[i].time + settle,
         i + 1 < commands.size() ? commands[i + 1].time : time.end);

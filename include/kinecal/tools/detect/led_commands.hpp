@@ -47,7 +47,8 @@ struct LedSpan {
 [[nodiscard]] std::vector<LedCommand> read_led_table(const std::string& path,
                                                      Diagnostics& diagnostics);
 
-/// The spans within a standstill.
+/// The spans within a standstill, from the first command on: which LEDs are on before, nothing says.  If no command switches
+/// all of them off, they count as off before the first one.
 /// @param commands  sorted by time
 /// @param settle    from a switch to the first view that counts
 [[nodiscard]] std::vector<LedSpan> led_spans(const std::vector<LedCommand>& commands,

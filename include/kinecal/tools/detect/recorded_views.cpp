@@ -882,7 +882,15 @@ void RecordedViews::choose_leds(const std::vector<CaptureFinder>& finders,
     std::stable_sort(led_commands_.begin(), led_commands_.end(),
                      [](const LedCommand& a, const LedCommand& b) { return a.time < b.time; });
   }
-  if (!led_commands_.empty()) return;
+  if (!led_commands_.empty()) {
+    if (std::none_of(led_commands_.begin(), led_commands_.end(),
+                     [](const LedCommand& of) { return of.code == 0; })) {
+      diagnostics.note(named->place, about + "no command switches the LEDs off in " +
+                                         options_.path +
+                                         "; they are taken for dark before the first one");
+    }
+    return;
+  }
   const std::string usual =
       detail::plain_topic(named->action.empty() ? "gripper_led_action" : named->action) + "/goal";
   diagnostics.error(

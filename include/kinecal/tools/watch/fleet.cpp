@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/tools/watch/fleet.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -35,12 +37,15 @@ namespace fs = std::filesystem;
 void find_robots(const fs::path& folder, const std::string& name, const WatchedFolders& folders,
                  std::vector<WatchedRobot>& robots) {
   const fs::path result = folder / folders.result, recordings = folder / folders.recordings;
-  if (fs::is_directory(result) || (folders.recordings != "." && fs::is_directory(recordings))) {
+  std::error_code
+      error;  // what cannot be looked at is no folder: one of another user, a link to itself
+  if (fs::is_directory(result, error) ||
+      (folders.recordings != "." && fs::is_directory(recordings, error))) {
     robots.push_back({name, result.string(), recordings.string()});
     return;
   }
   for (const fs::path& entry : entries_of(folder)) {
-    if (!fs::is_directory(entry) || fs::is_symlink(entry)) continue;
+    if (!fs::is_directory(entry, error) || fs::is_symlink(entry, error)) continue;
     find_robots(entry, (name.empty() ? "" : name + "/") + entry.filename().string(), folders,
                 robots);
   }
@@ -65,6 +70,11 @@ void add_file(const fs::path& file, RecordingFiles& to) {
   to.files.push_back(file.string());
   to.seen.size += static_cast<std::int64_t>(size);
   to.seen.modified = std::max(to.seen.modified, file_time(file.string()));
+  struct stat status = {};
+  if (stat(file.c_str(), &status) == 0) {
+    to.changed =
+        std::max(to.changed, nanoseconds(std::chrono::system_clock::from_time_t(status.st_ctime)));
+  }
   for (const char* end : {"-wal", "-journal"}) {
     if (fs::exists(file.string() + end, error)) to.is_open = true;
   }
@@ -100,6 +110,15 @@ void find_recordings(const fs::path& folder, const std::string& prefix,
   return recording.state != RecordingState::refused;
 }
 
+/// X if nothing has moved, and what samples that do not fit cost every mover; at least.
+[[nodiscard]] double score_of_rest(const WatchedRecording& recording) {
+  double score = recording.statistic;
+  for (const WatchedChange& change : recording.changes) {
+    score = std::max(score, change.score - 2.0 * static_cast<double>(change.change.size()));
+  }
+  return score;
+}
+
 /// The movers of a robot, each with its changes by time.
 struct MoverOverTime {
   WatchedChange of;
@@ -110,6 +129,7 @@ struct MoverOverTime {
   std::vector<MoverOverTime> movers;
   for (const WatchedRecording& recording : robot.recordings) {
     if (!is_usable(recording)) continue;
+    const double rest = score_of_rest(recording);
     for (const WatchedChange& change : recording.changes) {
       auto known = std::find_if(movers.begin(), movers.end(),
                                 [&](const MoverOverTime& mover) { return mover.of.is_of(change); });
@@ -120,7 +140,8 @@ struct MoverOverTime {
                                        .units = change.units},
                                       {}});
       }
-      known->changes.push_back({recording.time, change.change, change.covariance, change.score});
+      known->changes.push_back(
+          {recording.time, change.change, change.covariance, change.score - rest});
     }
   }
   return movers;
@@ -130,9 +151,10 @@ struct MoverOverTime {
 }  // namespace detail
 
 std::vector<WatchedRobot> robots_in(const std::string& tree, const WatchedFolders& folders) {
-  if (!std::filesystem::is_directory(tree)) {
-    throw InputError(tree +
-                     (std::filesystem::exists(tree) ? ": is not a folder" : ": does not exist"));
+  std::error_code error;
+  if (!std::filesystem::is_directory(tree, error)) {
+    const bool exists = std::filesystem::exists(std::filesystem::symlink_status(tree, error));
+    throw InputError(tree + (exists ? ": is not a folder" : ": does not exist"));
   }
   std::vector<WatchedRobot> robots;
   detail::find_robots(tree, "", folders, robots);
@@ -142,7 +164,7 @@ std::vector<WatchedRobot> robots_in(const std::string& tree, const WatchedFolder
   }
   for (WatchedRobot& robot : robots) {
     if (!robot.name.empty()) continue;  // the tree itself
-    const auto path = std::filesystem::weakly_canonical(tree);
+    const auto path = std::filesystem::weakly_canonical(tree, error);
     robot.name = (path.has_filename() ? path : path.parent_path()).filename().string();
   }
   return robots;
@@ -156,8 +178,9 @@ std::vector<RecordingFiles> recordings_in(const std::string& folder) {
 
 bool is_settled(const RecordingFiles& recording, std::int64_t now, double seconds) {
   constexpr double kNano = 1e-9;
-  const double age = kNano * static_cast<double>(now - recording.seen.modified);
-  return !recording.is_open && (age >= seconds || age < -seconds);  // the latter of another clock
+  const bool is_ahead = recording.seen.modified > now;  // it has the date of another clock
+  const std::int64_t written = is_ahead ? recording.changed : recording.seen.modified;
+  return !recording.is_open && kNano * static_cast<double>(now - written) >= seconds;
 }
 
 std::int64_t file_time(const std::string& file) {
@@ -231,34 +254,37 @@ std::vector<RobotFinding> judge_fleet(std::span<const RobotHistory> robots, doub
   return findings;
 }
 
-std::vector<double> change_now(const RobotFinding& finding) {
-  std::vector<double> change;
-  if (finding.drift) {
-    const DriftLine& line = finding.drift->line;
-    for (std::size_t i = 0; i < line.slope.size(); ++i) {
-      change.push_back(line.change_at(i, line.last));
-    }
-  } else if (finding.moved != nullptr) {
-    change = finding.moved->change;
-  }
-  return change;
-}
-
 RobotDecision decide(const RobotFinding& finding, const WatchLimits& limits) {
   RobotDecision decision;
   if (finding.usable == 0) return decision;
   decision.state = FleetState::holds;
-  const std::vector<double> change = change_now(finding);
-  if (limits.size && !change.empty()) decision.change = limits.size->of(change);
-  const bool matters = !decision.change || *decision.change > limits.limit;
+  const auto size_of = [&](const WatchedChange& mover) {
+    return limits.size ? limits.size(mover) : std::nullopt;
+  };
   if (finding.drift) {
     decision.state = FleetState::drifts;
-    if (limits.size) decision.passes = passes(finding.drift->line, *limits.size, limits.limit);
+    const DriftLine& line = finding.drift->line;
+    if (const std::optional<ChangeSize> size = size_of(finding.drift->of)) {
+      std::vector<double> now;
+      for (std::size_t i = 0; i < line.slope.size(); ++i) {
+        now.push_back(line.change_at(i, line.last));
+      }
+      decision.change = size->of(now);
+      decision.passes = passes(line, *size, limits.limit);
+    }
     if (decision.passes && decision.passes->time <= limits.now + limits.ahead) {
       decision.state = FleetState::recalibrate;
     }
   }
-  if (finding.has_moved && matters) decision.state = FleetState::recalibrate;
+  if (!finding.has_moved) return decision;
+  std::optional<double> moved;  // in the last recording, maybe something else than what drifts
+  if (finding.moved != nullptr) {
+    if (const std::optional<ChangeSize> size = size_of(*finding.moved)) {
+      moved = size->of(finding.moved->change);
+      decision.change = std::max(decision.change.value_or(0.0), *moved);
+    }
+  }
+  if (!moved || *moved > limits.limit) decision.state = FleetState::recalibrate;
   return decision;
 }
 

@@ -8,6 +8,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,13 +45,15 @@ struct RecordingFiles {
   std::vector<std::string> files;  ///< all of them, in natural order
   WatchedRecording seen;           ///< name, size and when it was last written
   bool is_open = false;            ///< another program has a file beside it that it writes to
+  std::int64_t changed = 0;  ///< when anything of it last changed here, also its date, nanoseconds
 };
 
 /// The recordings below a folder, in natural order; none if it does not exist.  Hidden files, temporary ones (.part, .tmp,
 /// .active, ~) and columns.yaml are no recordings.
 [[nodiscard]] std::vector<RecordingFiles> recordings_in(const std::string& folder);
 
-/// True if nothing was written to a recording for some time.
+/// True if nothing was written to a recording for some time.  One whose date is ahead of `now` was dated by another clock: of it,
+/// `changed` counts.
 /// @param now  nanoseconds, as `modified`
 [[nodiscard]] bool is_settled(const RecordingFiles& recording, std::int64_t now, double seconds);
 
@@ -100,23 +104,22 @@ enum class FleetState { not_known, holds, drifts, recalibrate };
 
 /// When a change matters.
 struct WatchLimits {
-  std::optional<ChangeSize> size = {};  ///< of the change that was found; nullopt: not known
-  double limit = 0.0;                   ///< of it
-  double now = 0.0;                     ///< seconds since 1970
-  double ahead = 0.0;                   ///< seconds within which it must not pass the limit
+  /// How the changes of a mover are measured; nullopt, or empty: not known.
+  std::function<std::optional<ChangeSize>(const WatchedChange&)> size = {};
+  double limit = 0.0;  ///< of a size
+  double now = 0.0;    ///< seconds since 1970
+  double ahead = 0.0;  ///< seconds within which a drift must not pass the limit
 };
 
 /// The state of a robot, and why.
 struct RobotDecision {
   FleetState state = FleetState::not_known;  ///< what is to be done
-  std::optional<double> change = {};         ///< size of the change in the last recording
+  std::optional<double> change = {};         ///< size of the drift so far, or of what has moved
   std::optional<When> passes = {};           ///< when a drift passes the limit
 };
 
-/// The change whose size matters: of the drift, or of the last recording; empty: none.
-[[nodiscard]] std::vector<double> change_now(const RobotFinding& finding);
-
-/// Decides.  A change of unknown size matters; a drift of unknown size only if the last recording does not hold.
+/// Decides.  A robot with a small drift may have moved by more, elsewhere: each is measured by itself, and `change` is the larger one.
+/// What has moved by an unknown size matters; a drift of unknown size does not by itself.
 [[nodiscard]] RobotDecision decide(const RobotFinding& finding, const WatchLimits& limits);
 
 }  // namespace kinecal

@@ -13,6 +13,7 @@
 #include <sqlite3.h>
 
 #include <cstring>
+#include <set>
 
 namespace kinecal {
 
@@ -165,6 +166,8 @@ class HistoryFile {
   [[nodiscard]] bool has_changed_a_row() const { return sqlite3_changes(handle_.get()) > 0; }
   [[nodiscard]] const std::string& path() const { return path_; }
 
+  std::set<std::pair<std::int64_t, std::string>> looked_at;  ///< since the start, robot and name
+
  private:
   struct Close {
     void operator()(sqlite3* handle) const { sqlite3_close_v2(handle); }
@@ -298,11 +301,17 @@ bool History::follows_another(std::int64_t epoch) const {
 }
 
 bool History::knows(std::int64_t epoch, const WatchedRecording& file) const {
-  return detail::Query(
-             *file_,
-             "SELECT 1 FROM seen WHERE robot = ? AND name = ? AND size = ? AND modified = ?",
-             detail::robot_of(*file_, epoch), file.name, file.size, file.modified)
-      .next();
+  const std::int64_t robot = detail::robot_of(*file_, epoch);
+  const bool is_seen =
+      detail::Query(*file_,
+                    "SELECT 1 FROM seen WHERE robot = ? AND name = ? AND size = ? AND modified = ?",
+                    robot, file.name, file.size, file.modified)
+          .next();
+  if (!is_seen || file_->looked_at.contains({robot, file.name})) return is_seen;
+  return !detail::Query(*file_,
+                        "SELECT 1 FROM recording WHERE epoch = ? AND name = ? AND state = ?", epoch,
+                        file.name, static_cast<std::int64_t>(RecordingState::refused))
+              .next();
 }
 
 std::optional<History::Place> History::with_content(const std::string& checksum) const {
@@ -320,9 +329,13 @@ void History::add(std::int64_t epoch, std::span<const WatchedRecording> recordin
   detail::HistoryFile::Transaction adding(*file_);
   const std::int64_t robot = detail::robot_of(*file_, epoch);
   for (const WatchedRecording& of : recordings) {
-    detail::Query(*file_, "INSERT OR REPLACE INTO seen VALUES(?, ?, ?, ?)", robot, of.name, of.size,
-                  of.modified)
-        .run();
+    if (of.may_pass) {
+      detail::Query(*file_, "DELETE FROM seen WHERE robot = ? AND name = ?", robot, of.name).run();
+    } else {
+      detail::Query(*file_, "INSERT OR REPLACE INTO seen VALUES(?, ?, ?, ?)", robot, of.name,
+                    of.size, of.modified)
+          .run();
+    }
     detail::Query(*file_, "DELETE FROM recording WHERE robot = ? AND name = ? AND state = ?", robot,
                   of.name, static_cast<std::int64_t>(RecordingState::refused))
         .run();
@@ -336,6 +349,7 @@ void History::add(std::int64_t epoch, std::span<const WatchedRecording> recordin
     if (file_->has_changed_a_row()) detail::add_changes(*file_, file_->last_row(), of.changes);
   }
   adding.keep();
+  for (const WatchedRecording& of : recordings) file_->looked_at.emplace(robot, of.name);
 }
 
 std::vector<WatchedRecording> History::recordings(std::int64_t epoch) const {

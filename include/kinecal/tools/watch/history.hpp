@@ -4,7 +4,8 @@
 //   epoch      a result that was in force: the checksum of its files
 //   recording  the verdict on a recording, once per content; or why it was refused
 //   change     how far each joint, frame or sensor may have moved in it
-//   seen       files that were looked at: size and time
+//   seen       files that were looked at: size and time; those that were refused are looked at again after each start, as a
+//              missing mesh may be there now
 //
 // A new result of a robot begins an epoch: what is older counts no more.  Recordings are added in transactions, so a full
 // disk, a crash or a second watcher leaves whole recordings or none.
@@ -49,11 +50,12 @@ struct WatchedRecording {
   double time = 0.0;                               ///< when it was recorded, seconds since 1970
   RecordingState state = RecordingState::refused;  ///< what became of it
   std::string reason = {};                         ///< why it was refused
-  int samples = 0;                                 ///< number of them
-  double statistic = 0.0;                          ///< X, see Drift
-  double freedom = 0.0;                            ///< its degrees of freedom
-  double probability = 1.0;                        ///< of a larger one by chance
-  std::vector<WatchedChange> changes = {};         ///< of all movers
+  bool may_pass = false;                    ///< by itself, as a lack of memory: it is not `seen`
+  int samples = 0;                          ///< number of them
+  double statistic = 0.0;                   ///< X, see Drift
+  double freedom = 0.0;                     ///< its degrees of freedom
+  double probability = 1.0;                 ///< of a larger one by chance
+  std::vector<WatchedChange> changes = {};  ///< of all movers
 };
 
 namespace detail {
@@ -82,7 +84,8 @@ class History {
   /// True if an earlier result of the robot of an epoch is known.
   [[nodiscard]] bool follows_another(std::int64_t epoch) const;
 
-  /// True if a file of this name, size and time was looked at, of the robot of an epoch.
+  /// True if a file of this name, size and time was looked at, of the robot of an epoch.  What was refused in this epoch counts only
+  /// if this object has it.
   [[nodiscard]] bool knows(std::int64_t epoch, const WatchedRecording& file) const;
 
   /// A recording of a robot.

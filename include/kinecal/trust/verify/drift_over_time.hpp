@@ -9,7 +9,8 @@
 // correlation rho) count as fewer: s^2 (1 + rho) / (1 - rho).  The fall of Q by b is compared with F, for the largest rho
 // that n recordings allow, rho + 2 / sqrt(n): a wandering zero and a drift look alike at first.  So with fewer than about
 // eight recordings nothing is found.
-// Lines of several movers are compared by the X that they leave in all recordings, plus 2 rank.
+// Lines of several movers are compared by the X that they leave, plus 2 rank, less the X of nothing moved: not every mover is in all
+// recordings, and what it is not in it leaves as it is.
 // A drift of any of n movers of all robots is found if its probability is below level / n (Bonferroni).
 // Source: Bartlett, On the Theoretical Specification and Sampling Properties of Autocorrelated Time-Series, 1946 (rho).
 // SPDX-License-Identifier: Apache-2.0
@@ -26,7 +27,7 @@ struct TimedChange {
   double time = 0.0;               ///< of the recording, seconds
   std::vector<double> change;      ///< (k) of its parameters, in their units
   std::vector<double> covariance;  ///< (k x k) row after row
-  double score = 0.0;              ///< X that is left + 2 rank: Mover::score
+  double score = 0.0;              ///< X that is left + 2 rank (Mover::score) - X if nothing moved
 };
 
 /// The line through the changes of a mover.
@@ -40,7 +41,7 @@ struct DriftLine {
   double scatter = 0.0;            ///< s: 1 if recordings differ as their covariances say
   double memory = 0.0;             ///< rho
   double probability = 1.0;        ///< of a larger slope by chance
-  double score = 0.0;              ///< X that the line leaves in all recordings, + 2 rank
+  double score = 0.0;  ///< X that the line leaves + 2 rank - X if nothing moved; the least is best
 
   /// The change of a parameter at some time.
   [[nodiscard]] double change_at(std::size_t parameter, double time) const {
