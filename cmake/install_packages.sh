@@ -9,7 +9,7 @@ libpng-dev libjpeg-dev libtiff-dev libapriltag-dev libboost-dev nlohmann-json3-d
 pybind11-dev python3-dev python3-numpy"
 if [ "${1:-}" = test ]; then
   packages="$packages ccache lld clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 libgtest-dev libgmock-dev libbenchmark-dev liborocos-kdl-dev \
-libopenmpi-dev openmpi-bin doxygen libfastcdr-dev libyaml-cpp-dev libopencv-dev python3 python3-jsonschema python3-yaml mypy chromium"
+libopenmpi-dev openmpi-bin doxygen libfastcdr-dev libyaml-cpp-dev libopencv-dev python3 python3-jsonschema python3-yaml python3-venv mypy chromium"
   command -v npm >/dev/null || packages="$packages nodejs npm"  # others ship both as one package
 fi
 

@@ -9,7 +9,7 @@ as_root=""
 [ "$(id -u)" = 0 ] || as_root=sudo
 sudo() { $as_root env DEBIAN_FRONTEND=noninteractive "$@"; }
 work=$(mktemp -d)
-trap 'sudo dpkg --remove kinecal-robot-calibration kinecal-opencv libkinecal-dev kinecal >/dev/null 2>&1 || true; rm -rf "$work"' EXIT
+trap 'sudo dpkg --remove python3-kinecal kinecal-robot-calibration kinecal-mpi kinecal-opencv libkinecal-dev kinecal >/dev/null 2>&1 || true; rm -rf "$work"' EXIT
 
 dpkg -s libopencv-dev >/dev/null 2>&1 || sudo apt-get install -y -qq libopencv-dev >/dev/null
 echo "== README, Install, $(date +%H:%M:%S)"
@@ -52,6 +52,19 @@ echo "== where ROS looks, $(date +%H:%M:%S)"
 sudo apt-get install -y -qq "$source"/build/release/kinecal-robot-calibration_*_all.deb >/dev/null
 # shellcheck disable=SC2016  # bash expands it
 [ "$(bash -c '. /usr/lib/kinecal/robot_calibration/setup.bash; "${AMENT_PREFIX_PATH%%:*}"/lib/robot_calibration/to_rpy 0 0 0.25')" = "0, 0, 0.25" ]
+
+echo "== Python, $(date +%H:%M:%S)"
+sudo apt-get install -y -qq "$source"/build/release/python3-kinecal_*.deb >/dev/null
+export PYTHONDONTWRITEBYTECODE=1
+(cd "$source/tests/python" && /usr/bin/python3 -m unittest -q)
+for example in "$source"/examples/python/*.py; do
+  /usr/bin/python3 "$example" >/dev/null
+done
+sudo dpkg --remove python3-kinecal >/dev/null
+/usr/bin/python3 -m venv --system-site-packages venv  # NumPy is Debian's
+venv/bin/pip install -q --no-index "$source"
+venv/bin/python -c 'import kinecal; print(kinecal.__version__, kinecal.__file__)' | grep -q venv
+venv/bin/kinecal --version >/dev/null
 
 echo "== programs of a user's own, $(date +%H:%M:%S)"
 cmake -S "$source/tests/consumer" -B consumer -G Ninja -DCMAKE_BUILD_TYPE=Release >/dev/null

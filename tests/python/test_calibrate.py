@@ -2,12 +2,12 @@
 
 import json
 import pickle
-import signal
 import subprocess
 import sys
 import tempfile
 import threading
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
@@ -83,6 +83,26 @@ class Calibration(unittest.TestCase):
         for config in (scene.CONFIG.to_dict(), text):
             result = kinecal.calibrate(scene.robot(), self.samples, config)
             self.assertEqual(result.urdf, self.result.urdf)
+
+    def test_many_samples_are_calibrated_part_by_part(self) -> None:
+        samples = scene.samples(400)
+        at_once = kinecal.calibrate(scene.robot(), samples, scene.CONFIG)
+        with unittest.mock.patch.multiple(kinecal.calibration, _MANY=100, _ROWS=70):
+            samples = scene.samples(400)
+            in_parts = kinecal.calibrate(scene.robot(), samples, scene.CONFIG, draw=90)
+            self.assertIsNone(samples._list, "the arrays were copied")
+        self.assertEqual(in_parts.verdict, "good", str(in_parts))
+        self.assertEqual(in_parts.report["samples"], 400)
+        for one, other in zip(at_once.parameters, in_parts.parameters):
+            self.assertLess(abs(one.after - other.after), 0.05 * one.sigma, one.name)
+            self.assertLess(abs(one.sigma / other.sigma - 1), 0.2, one.name)
+        misspelt = kinecal.Samples(
+            np.zeros((120, 1)), ["elbw"], points={"arm": scene.POINTS, "tracker": np.ones((120, 4, 3))},
+            frames={"arm": "hand", "tracker": "tracker_frame"},
+        )
+        with unittest.mock.patch.multiple(kinecal.calibration, _MANY=100, _ROWS=70):
+            with self.assertRaisesRegex(kinecal.KinecalError, "elbw|elbow"):
+                kinecal.calibrate(scene.robot(), misspelt, scene.CONFIG)
 
     def test_what_the_samples_support_is_found(self) -> None:
         config = {**scene.CONFIG.to_dict(), "free_params": []}

@@ -64,6 +64,7 @@ CalibrationOptions options_of(const py::dict& given, const py::object& progress)
   take("threads", options.solving.threads);
   take("starts", options.solving.random_starts);
   take("folds", options.folds);
+  take("draw", options.draw);
   take("keep_outliers", options.keep_outliers);
   take("exclude", options.exclude);
   take("hold", options.hold);

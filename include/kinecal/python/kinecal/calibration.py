@@ -285,6 +285,7 @@ def calibrate(
     between: Sequence[str] = (),
     mesh_paths: Sequence[str | os.PathLike[str]] = (),
     search: bool = False,
+    draw: int = 3000,
 ) -> Result:
     """Calibrates a robot and judges the result, as ``kinecal calibrate`` does.
 
@@ -304,6 +305,7 @@ def calibrate(
         between: sensors, links or frames; the report has the +- of the pose of one in another.
         mesh_paths: folders of the URDF's packages.
         search: find out what the samples support, even if the configuration frees something.
+        draw: of more than 50 000 samples of arrays: those on which they are judged.
 
     Raises:
         KinecalError: with all errors of the input.
@@ -325,6 +327,7 @@ def calibrate(
         "between": list(between),
         "mesh_paths": paths,
         "search": search,
+        "draw": draw,
     }
     arrays = samples._arrays
     if arrays is not None and text is not None and not search and len(samples) > _MANY:
