@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "input.hpp"
 #include "kinecal/files/checksum.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/results/result_files.hpp"

@@ -5,6 +5,7 @@
 
 #include <sstream>
 
+#include "input.hpp"
 #include "kinecal/files/bags/mcap/write_mcap.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/procedure/calibrated_page.hpp"

@@ -34,8 +34,8 @@ struct Check {
   [[nodiscard]] const ParameterTable& table() const { return fresh.problem().table(); }
 };
 
-std::string mover_name(const Check& check, const Mover& mover) {
-  return cli::mover_name(check.result, mover.owner, mover.is_frame);
+std::string name_of(const Check& check, const Mover& mover) {
+  return mover_name(check.result, mover.owner, mover.is_frame);
 }
 
 /// "0.57 deg +- 0.01 deg"
@@ -196,19 +196,19 @@ std::string movers_text(const Check& check) {
           "  but not it alone: residuals stay {:.2f} times too large, so something else has "
           "changed, or "
           "the result is less exact at these poses\n",
-          mover_name(check, first), change_text(check, first), rest);
+          name_of(check, first), change_text(check, first), rest);
     }
     return fmt::format(
         "No single joint, frame or sensor explains it: several have moved, or something that is no "
         "parameter (a bent link, another load, many bad captures)\n"
         "  nearest: {}, {}; residuals stay {:.2f} times too large\n",
-        mover_name(check, first), change_text(check, first), rest);
+        name_of(check, first), change_text(check, first), rest);
   }
   std::string text = "Most likely moved\n";
   constexpr int kListed = 4;
   for (int i = 0; i < std::min(drift.alike, kListed); ++i) {
     const Mover& mover = drift.movers[static_cast<std::size_t>(i)];
-    text += fmt::format("  {}{}: {}\n", i == 0 ? "" : "or ", mover_name(check, mover),
+    text += fmt::format("  {}{}: {}\n", i == 0 ? "" : "or ", name_of(check, mover),
                         change_text(check, mover));
     for (const std::string& same : mover.same) {
       text += fmt::format("     or '{}', which moves all that these samples show in the same way\n",
@@ -230,7 +230,7 @@ std::string next_text(const Check& check) {
   }
   if (drift.movers.empty() || !drift.movers.front().explains) return "Next: calibrate again\n";
   return fmt::format("Next: see whether {} is loose, then calibrate again\n",
-                     mover_name(check, drift.movers.front()));
+                     name_of(check, drift.movers.front()));
 }
 
 detail::Json json(const Check& check, const Mover& mover, bool alike) {
