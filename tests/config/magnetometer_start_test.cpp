@@ -5,8 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "kinecal/config/read_config.hpp"
+#include "kinecal/errors/magnetic_field.hpp"
 #include "support/magnetometer.hpp"
 
 namespace kinecal {
@@ -51,6 +55,15 @@ TEST(MagnetometerStart, LeavesWhatIsGiven) {
   EXPECT_EQ(numbers.at("bias_x"), 3.0);
   EXPECT_EQ(numbers.at("bias_y"), 0.0);
   EXPECT_EQ(numbers.at("field"), 48.0);
+}
+
+/// Also where it is what the field would be without.
+TEST(MagnetometerStart, LeavesAFieldThatIsGivenAsTheDefault) {
+  Diagnostics found;
+  const double usual = MagneticField::kParameters.back().initial;
+  const auto numbers = begun(SimulatedMagnetometer{.all_ways = true}.samples(100, 1), found,
+                             ", field: " + std::to_string(usual));
+  EXPECT_EQ(numbers.at("field"), usual);
 }
 
 /// A base turns about one axis, and the sensor may be tilted on it.

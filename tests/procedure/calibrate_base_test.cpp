@@ -121,6 +121,22 @@ TEST(CalibrateBase, WhatTheDriverHasIsOfTheConfiguration) {
   EXPECT_THAT(text, HasSubstr("\nodom: 0.37"));
 }
 
+/// Nobody sets a driver to a width of one metre that no file gives.
+TEST(CalibrateBase, AWidthThatIsNotGivenIsNotThatOfTheDriver) {
+  CalibrationSetup setup =
+      setup_of("base_track_width_scale",
+               "- {name: base, type: differential_to_wall, wheel_radius: 0.0605, x: 0.23, "
+               "translation_scale: 500, rotation_scale: 500}\n",
+               simulate_base(SimulatedBase{}, turns_and_straight_runs(), 5).samples);
+  setup.urdf_text = "<robot name=\"r\"><link name=\"base_link\"/></robot>";
+  std::string text;
+  for (const OutputFile& file : calibrated_files(calibrate_robot(std::move(setup)))) {
+    if (file.name == "base_calibration.yaml") text = file.content;
+  }
+  EXPECT_THAT(text, HasSubstr("track_width_scale: 0.37"));  // of one metre
+  EXPECT_THAT(text, testing::Not(HasSubstr("odom:")));
+}
+
 TEST(CalibrateBase, SizesArePositive) {
   Diagnostics found;
   (void)parse_config(

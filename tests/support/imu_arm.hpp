@@ -30,7 +30,8 @@ struct SimulatedImu {
   Matrix3<double> acceleration = Matrix3<double>::Identity();
   Matrix3<double> rate = Matrix3<double>::Identity();
   std::string frame = "imu_link";
-  bool rests = true;  ///< else the arm always moves
+  bool rests = true;               ///< else the arm always moves
+  bool has_latched_joint = false;  ///< another publisher of joints writes one message
 
   static std::vector<double> pose(int n) {
     return {0.6 * std::sin(1.0 * n), 0.6 * std::sin(2.3 * n), 0.8 * std::cos(1.7 * n)};
@@ -64,6 +65,15 @@ struct SimulatedImu {
     };
     const int count =
         static_cast<int>(std::lround(((kPoses - 1) * (kRest + kMove) + kRest) / kStep));
+    if (has_latched_joint) {
+      const Stamp start(std::llround(1e9 * 1000.0));
+      bag.write({"joint_states", "sensor_msgs/JointState"}, start.count(),
+                detail::fields("header",
+                               detail::fields("stamp", detail::time_fields(start), "frame_id",
+                                              std::string_view("")),
+                               "name", detail::texts({"gripper"}), "position",
+                               detail::numbers(std::vector<double>{0.02})));
+    }
     for (int i = 0; i < count; ++i) {
       const double time = kStep * i;
       const Stamp stamp(std::llround(1e9 * (1000.0 + time)));

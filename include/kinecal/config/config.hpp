@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -112,6 +113,7 @@ struct BlockConfig {
   std::vector<std::string> models;  ///< in the order of the registry's keys; empty for outrageous
   std::string param;                ///< outrageous: joint, frame or parameter
   std::map<std::string, double> numbers;  ///< by key; defaults filled in
+  std::set<std::string> given = {};       ///< keys of those that the file has
   /// `samples: exclusive` (or alone): only samples without observations of other models; nullopt:
   /// not given.
   std::optional<bool> exclusive = {};

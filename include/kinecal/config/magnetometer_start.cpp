@@ -158,7 +158,8 @@ void begin_magnetometer(Config& config, std::vector<Sample>& samples, Diagnostic
   for (BlockConfig* block : blocks) {
     auto& numbers = block->numbers;
     const auto is_default = [&](const ParameterInfo& own) {
-      return numbers.at(std::string(own.name)) == own.initial;
+      const std::string name(own.name);
+      return !block->given.contains(name) && numbers.at(name) == own.initial;
     };
     const auto& own = MagneticField::kParameters;
     if (!std::all_of(own.begin(), own.begin() + 3, is_default) || !is_default(own.back())) continue;

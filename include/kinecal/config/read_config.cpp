@@ -74,6 +74,7 @@ void read_block_model(ConfigMap& map, const BlockSensorEntry& of_block,
 void read_block_numbers(ConfigMap& map, const BlockEntry& entry, BlockConfig& block) {
   for (const auto& [name, fallback] : entry.numbers) {
     block.numbers[name] = map.number(name, fallback);
+    if (map.find(name) != nullptr) block.given.insert(name);
     // It weights all residuals; the weight of a part of them (normal_scale) may be zero.
     if (name == "scale" && !(block.numbers[name] > 0.0)) {
       map.error(block.place,

@@ -86,7 +86,7 @@ template <ErrorBlock B, class Make>
 /// The numbers of a drive, with their defaults.
 /// @{
 [[nodiscard]] NumberKeys numbers_of(const DifferentialDrive&) {
-  return {{"wheel_radius", 1.0}, {"track_width", 1.0}};
+  return {{"wheel_radius", 1.0}, {"track_width", 0.0}};  // 0: what the driver has is not known
 }
 [[nodiscard]] NumberKeys numbers_of(const MecanumDrive&) {
   return {{"wheel_radius", 1.0}, {"track_width", 1.0}, {"wheelbase", 1.0}};
@@ -109,7 +109,8 @@ template <ErrorBlock B, class Make>
 /// A drive of these numbers.
 /// @{
 void set_drive(const BlockConfig& block, DifferentialDrive& drive) {
-  drive = {size_of(block, "wheel_radius"), size_of(block, "track_width")};
+  const double width = length_of(block, "track_width");
+  drive = {size_of(block, "wheel_radius"), width > 0.0 ? width : DifferentialDrive{}.track_width};
 }
 void set_drive(const BlockConfig& block, MecanumDrive& drive) {
   drive = {size_of(block, "wheel_radius"), size_of(block, "track_width"),

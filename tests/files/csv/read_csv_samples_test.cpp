@@ -664,6 +664,19 @@ increments:
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("'left_wheel' is a condition already")));
 }
 
+/// No row says where the tracker was before the first increment.
+TEST_F(ReadCsvSamples, BesideAnAbsolutePoseRunsOfIncrementsBeginAtTheirFirstRow) {
+  const auto samples = read("run,l,x\n1,2,10\n1,3,13\n2,4,20\n2,5,25\n",
+                            "conditions: {run: run, track_x: x}\nincrements: {left_wheel: l}\n");
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 4u);
+  for (const std::size_t i : {1u, 3u}) {
+    const auto &now = samples[i].conditions, &before = samples[i - 1].conditions;
+    EXPECT_EQ(now.at("left_wheel") - before.at("left_wheel"),
+              now.at("track_x") - before.at("track_x"));
+  }
+}
+
 TEST_F(ReadCsvSamples, ReportsFilesThatAreEmptyOrMissing) {
   (void)read("");
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("the table has no rows")));

@@ -50,7 +50,13 @@ TEST_F(GravityBag, EachRestIsASample) {
 
 TEST_F(GravityBag, AnArmThatNeverRestsIsAnError) {
   (void)read({.rests = false});
-  EXPECT_THAT(found_.errors, ElementsAre(HasSubstr("never stand still")));
+  EXPECT_THAT(found_.errors, ElementsAre(HasSubstr("('pan', ...) never stand still")));
+}
+
+TEST_F(GravityBag, AMessageThatIsPublishedOnceHidesNoRest) {
+  EXPECT_EQ(read({.has_latched_joint = true}).size(),
+            static_cast<std::size_t>(SimulatedImu::kPoses));
+  EXPECT_THAT(found_.errors, IsEmpty());
 }
 
 TEST_F(GravityBag, ReadingsWithoutGravityAreADoubt) {

@@ -31,7 +31,10 @@ struct BagOptions {
   bool has_scans = true, has_tracked = false, has_odometry = true;
   std::vector<std::string> wheels = {};  ///< joints
   double gyro_sign = 1.0;
-  double late_imu = 0.0;  ///< stamps of the IMU behind those of the odometry, seconds
+  double late_imu = 0.0;          ///< stamps of the IMU behind those of the odometry, seconds
+  bool has_bad_messages = false;  ///< each tenth of the odometry and of the IMU has no numbers
+  bool has_goal = false;          ///< another topic of poses, far away
+  double silent_from = 1e9, silent_to = 1e9;  ///< seconds without an IMU
 };
 
 MessageFields header(double time, std::string_view frame) {
@@ -74,9 +77,16 @@ void write_drive(const std::string& path, const SimulatedBase& base, const BagOp
     // The rate is constant over the step: stamped just inside of it.
     for (const double part : {1e-3, 0.25, 0.5, 0.75, 1.0}) {
       const double at = time + step * part;
-      MessageFields imu = fields("header", header(at - of.late_imu, "imu_link"), "angular_velocity",
-                                 fields("x", 0.0, "y", 0.0, "z", rate));
-      write("imu", "sensor_msgs/Imu", at, imu);
+      if (at > of.silent_from && at < of.silent_to) continue;
+      const auto write_rate = [&](double stamp, double z) {
+        const MessageFields imu = fields("header", header(stamp - of.late_imu, "imu_link"),
+                                         "angular_velocity", fields("x", 0.0, "y", 0.0, "z", z));
+        write("imu", "sensor_msgs/Imu", stamp, imu);
+      };
+      write_rate(at, rate);
+      if (of.has_bad_messages && i % 10 == 5) {
+        write_rate(at + 1e-4, std::numeric_limits<double>::quiet_NaN());
+      }
     }
     const int steps = begins ? 4 : 1;
     for (int n = 1; n <= steps; ++n) {
@@ -86,6 +96,19 @@ void write_drive(const std::string& path, const SimulatedBase& base, const BagOp
             "odom", "nav_msgs/Odometry", at,
             fields("header", header(at, "odom"), "child_frame_id", std::string("base_link"), "pose",
                    fields("pose", pose(now.at("odom_x"), now.at("odom_y"), now.at("odom_yaw")))));
+      }
+      if (of.has_bad_messages && i % 10 == 5) {
+        const MessageFields lost =
+            fields("position", fields("x", 9.0, "y", 9.0, "z", 0.0), "orientation",
+                   fields("x", 0.0, "y", 0.0, "z", 0.0, "w", 0.0));
+        write("odom", "nav_msgs/Odometry", at + 1e-4,
+              fields("header", header(at + 1e-4, "odom"), "child_frame_id",
+                     std::string_view("base_link"), "pose", fields("pose", lost)));
+      }
+      if (of.has_goal && i % 10 == 5) {
+        write("goal", "geometry_msgs/PoseWithCovarianceStamped", at + 1e-4,
+              fields("header", header(at + 1e-4, "world"), "pose",
+                     fields("pose", pose(90.0, 90.0, 0.0))));
       }
       if (!of.wheels.empty()) {
         std::vector<double> positions;
@@ -161,6 +184,40 @@ TEST_F(BaseDriveFromBag, ATrackedPoseNeedsNoScans) {
   ASSERT_GT(samples.size(), 50u);
   EXPECT_TRUE(samples[10].conditions.contains("track_yaw"));
   EXPECT_FALSE(samples[10].conditions.contains("wall_angle"));
+}
+
+TEST_F(BaseDriveFromBag, MessagesWithoutNumbersAreLeftOut) {
+  const std::vector<Sample> samples = read({.has_bad_messages = true});
+  EXPECT_THAT(found_.errors, IsEmpty());
+  EXPECT_THAT(found_.notes, testing::Contains(HasSubstr("quaternion has no length")));
+  ASSERT_GT(samples.size(), 50u);
+  EXPECT_TRUE(std::isfinite(samples[samples.size() - 2].conditions.at("gyro_yaw")));
+  for (const Sample& sample : samples) EXPECT_LT(sample.conditions.at("odom_x"), 8.0);
+}
+
+TEST_F(BaseDriveFromBag, PosesOfAnotherTopicAreNotThoseOfTheBase) {
+  const std::vector<Sample> samples =
+      read({.has_scans = false, .has_tracked = true, .has_goal = true});
+  EXPECT_THAT(found_.notes, testing::Contains(HasSubstr("'tracker' is used, not 'goal'")));
+  ASSERT_GT(samples.size(), 50u);
+  for (const Sample& sample : samples) EXPECT_LT(sample.conditions.at("track_x"), 50.0);
+}
+
+/// The angle through which the base turned meanwhile is not known.
+TEST_F(BaseDriveFromBag, NothingIsComparedAcrossASilenceOfTheGyroscope) {
+  const std::vector<Sample> samples = read({.silent_from = 4.0, .silent_to = 8.0});
+  EXPECT_THAT(found_.doubts, IsEmpty());
+  ASSERT_GT(samples.size(), 50u);
+  EXPECT_GT(samples.back().conditions.at(kRun),
+            static_cast<double>(turns_and_straight_runs().size()));
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const auto &now = samples[i].conditions, &before = samples[i - 1].conditions;
+    if (now.at(kRun) != before.at(kRun)) continue;
+    const double by = now.at("gyro_yaw") - before.at("gyro_yaw");
+    if (std::isfinite(by)) {  // within a step of the drive, as above
+      EXPECT_NEAR(by, now.at("odom_yaw") - before.at("odom_yaw"), 0.15);
+    }
+  }
 }
 
 TEST_F(BaseDriveFromBag, FourWheelsAreAlsoTwo) {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "support/noisy_scene.hpp"
 #include "support/repetitions.hpp"
@@ -182,6 +183,39 @@ TEST(PoseGroups, ReadingEachPoseFiveTimesSaysNothingMoreOfTheRobot) {
 
 /// The features of a sample are shifted along the target together, so some parameters suffer more.  Shrinking lets
 /// the others have a part of it: their +- are larger than they need be, but not by much.
+/// One long drive has stretches, whether its run has a number or not.
+TEST(PoseGroups, OfFewLongRunsAreStretches) {
+  const auto groups = [](std::size_t count, int runs, bool are_numbered) {
+    std::vector<Sample> samples(count);
+    for (std::size_t s = 0; s < count; ++s) {
+      const double run =
+          std::floor(static_cast<double>(s * static_cast<std::size_t>(runs) / count));
+      samples[s].conditions["odom_x"] = 0.1 * static_cast<double>(s);
+      if (are_numbered) samples[s].conditions[kRun] = run;
+      const bool begins = s == 0 || (are_numbered && samples[s - 1].conditions.at(kRun) != run);
+      if (!begins) samples[s].before = samples[s - 1].conditions;
+    }
+    return by_run(each_its_own(count), samples);
+  };
+  EXPECT_EQ(groups(200, 1, false).count, 20);
+  EXPECT_EQ(groups(200, 1, true).count, 20);
+  EXPECT_EQ(groups(200, 4, true).count, 20);
+  EXPECT_EQ(groups(200, 4, true).of_sample.size(), 200u);
+  EXPECT_EQ(groups(200, 5, true).count, 5);
+  EXPECT_EQ(groups(50, 1, true).count, 50);
+}
+
+/// The range of Student's distribution with few degrees of freedom, in parts of that of the normal one.
+TEST(StudentWidening, IsThatOfTables) {
+  EXPECT_NEAR(student_widening(1.0), 12.706 / 1.960, 2e-3);
+  EXPECT_NEAR(student_widening(2.0), 4.3027 / 1.960, 1e-3);
+  EXPECT_NEAR(student_widening(3.0), 3.1824 / 1.960, 3e-3);  // of the series: 0.2 %
+  EXPECT_NEAR(student_widening(10.0), 2.2281 / 1.960, 1e-3);
+  EXPECT_NEAR(student_widening(1e9), 1.0, 1e-6);
+  EXPECT_EQ(student_widening(0.5), student_widening(1.0));
+  EXPECT_NEAR(student_widening(2.999999), student_widening(3.0), 1e-4);
+}
+
 TEST(GradientVariance, EachParameterHasItsOwnShareOfWhatErrsTogether) {
   const std::size_t count = test::kNoisyFree.size();
   std::vector<double> errors(count, 0.0), variances(count, 0.0);

@@ -390,6 +390,11 @@ class Increments {
     for (const CsvCondition& condition : mapping.conditions) {
       if (condition.increment) sums_[condition.name] = 0.0;
     }
+    has_start_ = mapping.joints.empty() && mapping.poses.empty() && mapping.observations.empty() &&
+                 std::all_of(mapping.conditions.begin(), mapping.conditions.end(),
+                             [](const CsvCondition& condition) {
+                               return condition.increment || condition.name == kRun;
+                             });
     for (const auto& [name, sum] : sums_) {
       if (!name.ends_with("_yaw")) continue;
       const std::string body = name.substr(0, name.size() - 3);
@@ -397,7 +402,8 @@ class Increments {
     }
   }
 
-  /// Adds the sample of a row, and before the first of a run one where it began.  A row in which an increment is missing is left
+  /// Adds the sample of a row, and before the first of a run one where it began, if increments are all that it has: of what is
+  /// absolute no row says where it was then, and the first row is the start.  A row in which an increment is missing is left
   /// out: nothing says how the rows around it belong together, and nothing compares them.
   /// @returns  false if it was left out
   bool add(Sample sample, std::vector<Sample>& samples) {
@@ -412,7 +418,7 @@ class Increments {
     const auto run = sample.conditions.find(kRun);
     const std::optional<double> of =
         run == sample.conditions.end() ? std::nullopt : std::optional(run->second);
-    if (samples.empty() || of != run_) {
+    if (has_start_ && (samples.empty() || of != run_)) {
       Sample& start = samples.emplace_back(sample);
       for (const auto& [name, sum] : sums_) start.conditions[name] = sum;
     }
@@ -435,6 +441,7 @@ class Increments {
   std::map<std::string, double> sums_;  ///< by name
   std::vector<std::string> bodies_;     ///< "track_", of which x, y and yaw are increments
   std::optional<double> run_;           ///< of the last row
+  bool has_start_ = false;              ///< a run has a sample where it began
 };
 
 /// Warns of a header with only numbers, unless it counts the columns.

@@ -35,6 +35,7 @@ class RestsOfJoints {
  public:
   void add(MeasuredJoints reading) {
     const Stamp stamp = reading.stamp;
+    ++readings_;
     try {
       rest_.add(std::move(reading));
     } catch (const PoseError&) {  // its stamp is that of another one, or it is not a number
@@ -51,11 +52,17 @@ class RestsOfJoints {
     rests_.back().end = stamp;
   }
   [[nodiscard]] const std::vector<Rest>& rests() const { return rests_; }
+  /// Too few readings show no rest: a message that is published once.
+  [[nodiscard]] bool is_too_short() const {
+    constexpr int kFewest = 4;
+    return readings_ < kFewest;
+  }
 
  private:
   SettleOptions options_;
   JointRest rest_{options_};
   std::vector<Rest> rests_;
+  int readings_ = 0;
 };
 
 /// Times in which both are still, with the joints of both; those of the first count.
@@ -145,8 +152,10 @@ class GravityMessages {
       diagnostics_.error(
           {path_, 0},
           rests.empty()
-              ? "its joints never stand still: to read gravity, let the arm rest for a second in "
-                "each of some ten poses"
+              ? fmt::format(
+                    "its joints{} never stand still: to read gravity, let the arm rest for a "
+                    "second in each of some ten poses",
+                    restless())
               : "no accelerometer (sensor_msgs/Imu) is read while its joints stand still; do the "
                 "stamps of both have one clock?");
       return {};
@@ -210,11 +219,20 @@ class GravityMessages {
   }
   /// When all joints are still.
   [[nodiscard]] std::vector<Rest> still() const {
-    std::vector<Rest> rests;
-    for (auto at = joints_.begin(); at != joints_.end(); ++at) {
-      rests = at == joints_.begin() ? at->second.rests() : both(rests, at->second.rests());
+    std::optional<std::vector<Rest>> rests;
+    for (const auto& [names, of] : joints_) {
+      if (of.is_too_short()) continue;
+      rests = rests ? both(*rests, of.rests()) : of.rests();
     }
-    return rests;
+    return rests.value_or(std::vector<Rest>());
+  }
+  /// " ('pan', ...)": the first list of joints that never stands still; empty: each does.
+  [[nodiscard]] std::string restless() const {
+    for (const auto& [names, of] : joints_) {
+      if (of.is_too_short() || !of.rests().empty()) continue;
+      return fmt::format(" ('{}'{})", names.front(), names.size() > 1 ? ", ..." : "");
+    }
+    return "";
   }
   /// The topic whose readings at rest scatter most; empty: there are none.
   [[nodiscard]] std::string chosen(const std::vector<Rest>& rests) const {

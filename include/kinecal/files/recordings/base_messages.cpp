@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -24,6 +25,7 @@
 #include "kinecal/files/recordings/message_decoder.ipp"
 #include "kinecal/files/recordings/read_bag.hpp"
 #include "kinecal/geometry/median.hpp"
+#include "kinecal/text/counted.hpp"
 
 namespace kinecal {
 
@@ -31,6 +33,9 @@ namespace detail {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// Seconds between messages beyond which nothing says what happened between them.
+constexpr double kSilence = 0.5;
 
 /// Numbers over time.
 template <std::size_t N>
@@ -50,12 +55,11 @@ class Track {
   [[nodiscard]] const std::vector<double>& times() const { return times_; }  ///< seconds
   /// Interpolated; nullopt outside, or where messages are more than half a second apart.
   [[nodiscard]] std::optional<Numbers> at(double time) const {
-    constexpr double kGap = 0.5;  // seconds
     const auto after = std::lower_bound(times_.begin(), times_.end(), time);
     if (after == times_.end()) return std::nullopt;
     const auto i = static_cast<std::size_t>(after - times_.begin());
     if (times_[i] == time) return numbers_[i];
-    if (i == 0 || times_[i] - times_[i - 1] > kGap) return std::nullopt;
+    if (i == 0 || times_[i] - times_[i - 1] > kSilence) return std::nullopt;
     const double part = (time - times_[i - 1]) / (times_[i] - times_[i - 1]);
     Numbers between;
     for (std::size_t k = 0; k < N; ++k) {
@@ -69,11 +73,12 @@ class Track {
   std::vector<Numbers> numbers_;
 };
 
-/// The angle about z of a rotation, radians.
+/// The angle about z of a rotation, radians; not a number for a quaternion without a length, which trackers write that lost it.
 /// @param path  of a quaternion
 [[nodiscard]] double yaw_at(const MessageFields& message, const std::string& path) {
   const double x = number_at(message, path + ".x"), y = number_at(message, path + ".y"),
                z = number_at(message, path + ".z"), w = number_at(message, path + ".w");
+  if (!(x * x + y * y + z * z + w * w > 0.0)) return kMissing;
   return std::atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z);
 }
 
@@ -98,7 +103,7 @@ class BaseMessages {
   void read() {
     choose_topics();
     const auto wants = [&](const BagTopic& topic) {
-      const auto chosen = topics_.find(topic.type);
+      const auto chosen = topics_.find(kind_of(topic.type));
       if (use_of(topic) == TopicUse::urdf) return true;
       return chosen != topics_.end() && chosen->second == topic.name;
     };
@@ -127,18 +132,25 @@ class BaseMessages {
     return thinned(all_samples());
   }
 
-  /// Of several topics of a type, the one with upstream's name, else the first.
+  /// Both types of a pose are one: what tracks the base is one topic.
+  [[nodiscard]] static std::string kind_of(const std::string& type) {
+    return type == "geometry_msgs/PoseWithCovarianceStamped" ? "geometry_msgs/PoseStamped" : type;
+  }
+  /// Of several topics of a kind, the one with upstream's name, else that with most messages.
   void choose_topics() {
     const std::map<std::string, std::vector<std::string>> usual{
         {"nav_msgs/Odometry", {"odom"}},
         {"sensor_msgs/Imu", {"imu", "imu1/imu", "imu/data"}},
         {"sensor_msgs/LaserScan", {"base_scan", "scan"}},
         {"sensor_msgs/JointState", {"joint_states"}},
-        {"geometry_msgs/PoseStamped", {}},
-        {"geometry_msgs/PoseWithCovarianceStamped", {}}};
-    std::map<std::string, std::vector<std::string>> names;  // by type
-    for (const TopicContent& topic : bag_topics(path_, diagnostics_)) {
-      if (usual.contains(topic.type) && topic.messages > 0) names[topic.type].push_back(topic.name);
+        {"geometry_msgs/PoseStamped", {}}};
+    std::map<std::string, std::vector<std::string>> names;  // by kind
+    std::vector<TopicContent> topics = bag_topics(path_, diagnostics_);
+    std::stable_sort(topics.begin(), topics.end(),
+                     [](const auto& a, const auto& b) { return a.messages > b.messages; });
+    for (const TopicContent& topic : topics) {
+      const std::string kind = kind_of(topic.type);
+      if (usual.contains(kind) && topic.messages > 0) names[kind].push_back(topic.name);
     }
     for (auto& [type, of_type] : names) {
       topics_[type] = chosen_topic(std::move(of_type), usual.at(type), type, path_, diagnostics_);
@@ -156,10 +168,7 @@ class BaseMessages {
     late_[message.topic.name].push_back(
         1e-9 * static_cast<double>(message.time - header_stamp(content).count()));
     if (type == "nav_msgs/Odometry") {
-      const double yaw = yaw_at(content, "pose.pose.orientation");
-      odom_.add(time, {number_at(content, "pose.pose.position.x"),
-                       number_at(content, "pose.pose.position.y"),
-                       odom_.empty() ? yaw : unwrapped(yaw, odom_.last()[2])});
+      take_pose(odom_, time, content, "pose.pose");
       base_ = text_at(content, "child_frame_id");
     } else if (type == "sensor_msgs/Imu") {
       take_rate(time, number_at(content, "angular_velocity.z"));
@@ -168,11 +177,8 @@ class BaseMessages {
     } else if (type == "sensor_msgs/JointState") {
       take_wheels(time, content);
     } else {
-      const std::string pose = type == "geometry_msgs/PoseStamped" ? "pose" : "pose.pose";
-      const double yaw = yaw_at(content, pose + ".orientation");
-      tracked_.add(
-          time, {number_at(content, pose + ".position.x"), number_at(content, pose + ".position.y"),
-                 tracked_.empty() ? yaw : unwrapped(yaw, tracked_.last()[2])});
+      take_pose(tracked_, time, content,
+                type == "geometry_msgs/PoseStamped" ? "pose" : "pose.pose");
     }
   }
   /// The first stamp, from which times count: doubles then resolve microseconds.
@@ -180,13 +186,42 @@ class BaseMessages {
     if (!start_) start_ = header_stamp(content);
     return *start_;
   }
+  /// @param path  of the pose
+  void take_pose(Track<3>& track, double time, const MessageFields& content,
+                 const std::string& path) {
+    const double x = number_at(content, path + ".position.x"),
+                 y = number_at(content, path + ".position.y"),
+                 yaw = yaw_at(content, path + ".orientation");
+    if (!std::isfinite(x + y + yaw)) {
+      ++without_numbers_;
+      return;
+    }
+    track.add(time, {x, y, track.empty() ? yaw : unwrapped(yaw, track.last()[2])});
+  }
   void take_rate(double time, double rate) {
+    if (!std::isfinite(rate)) {
+      ++without_numbers_;
+      return;
+    }
     double angle = 0.0;
     if (!gyro_.empty()) {
-      angle = gyro_.last()[0] + 0.5 * (rate + rate_) * (time - gyro_.last_time());
+      const double step = time - gyro_.last_time();
+      if (!(step > 0.0)) return;
+      angle = gyro_.last()[0];
+      if (step > kSilence) {
+        gyro_gaps_.push_back(time);
+      } else {
+        angle += 0.5 * (rate + rate_) * step;
+      }
     }
     gyro_.add(time, {angle});
     rate_ = rate;
+  }
+  /// True if the rate of the gyroscope is not known all the time from one sample to the next.
+  [[nodiscard]] bool lacks_rates(const Sample& from, const Sample& to) const {
+    const auto gap =
+        std::upper_bound(gyro_gaps_.begin(), gyro_gaps_.end(), from.conditions.at("time"));
+    return gap != gyro_gaps_.end() && *gap <= to.conditions.at("time");
   }
   void take_scan(double time, const MessageFields& content) {
     scanner_ = text_at(content, "header.frame_id");
@@ -238,6 +273,18 @@ class BaseMessages {
                          fmt::format("stamps of '{}' are {:.2f} s earlier than those of '{}', "
                                      "compared with the time of recording: two clocks?",
                                      latest, most - least, earliest));
+    }
+    if (without_numbers_ > 0) {
+      diagnostics_.note({path_, 0},
+                        fmt::format("{} left out whose pose or rate is not a number, or whose "
+                                    "quaternion has no length",
+                                    counted(without_numbers_, "message")));
+    }
+    if (!gyro_gaps_.empty()) {
+      diagnostics_.note(
+          {path_, 0}, fmt::format("the gyroscope says nothing for more than {} s {}; a run begins "
+                                  "after that",
+                                  kSilence, counted(gyro_gaps_.size(), "time")));
     }
     if (without_wall_ > 0) {
       diagnostics_.note({path_, 0}, fmt::format("{} of {} scans show no wall; the first: {}",
@@ -292,7 +339,7 @@ class BaseMessages {
         return samples[i].conditions.at(name) - samples[i - 1].conditions.at(name);
       };
       const double odom = moved("odom_yaw"), gyro = moved("gyro_yaw");
-      if (!std::isfinite(odom + gyro)) continue;
+      if (!std::isfinite(odom + gyro) || lacks_rates(samples[i - 1], samples[i])) continue;
       product += odom * gyro;
       of_odom += odom * odom;
     }
@@ -333,6 +380,10 @@ class BaseMessages {
     };
     for (std::size_t i = 1; i < samples.size(); ++i) {
       const Sample &last = samples[i - 1], &sample = samples[i];
+      if (lacks_rates(last, sample)) {  // nothing compares the samples of two runs
+        moves = false;
+        continue;
+      }
       const double time = sample.conditions.at("time"),
                    speed = apart(last, sample) / (time - last.conditions.at("time"));
       if (!std::isfinite(speed)) continue;
@@ -360,6 +411,8 @@ class BaseMessages {
   Track<1> gyro_;                                    ///< integral of its rate, radians
   std::map<std::string, Track<1>> wheels_;           ///< by condition, radians
   double rate_ = 0.0;                                ///< of the gyroscope, last, rad/s
+  std::vector<double> gyro_gaps_;                    ///< when it was read again, seconds
+  std::size_t without_numbers_ = 0;                  ///< messages left out
   std::vector<SeenWall> walls_;                      ///< one of each scan
   int without_wall_ = 0;                             ///< scans
   std::string refusal_, base_, scanner_;             ///< of the first of them; frames

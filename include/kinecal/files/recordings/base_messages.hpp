@@ -10,7 +10,8 @@
 //
 // There is a sample at each scan, or at each tracked pose if there are no scans, with the others interpolated to its stamp; of
 // samples that stand still or are near to each other, one.  A run begins where the base starts to move: condition `run`.  Of
-// several topics of a type, the one with upstream's name counts: odom, imu, base_scan.
+// several topics of a type, the one with upstream's name counts (odom, imu, base_scan), else that with most messages; both types
+// of poses are one.  Messages that have no numbers are left out; a run ends where the gyroscope is silent for half a second.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

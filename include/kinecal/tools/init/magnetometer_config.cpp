@@ -76,11 +76,15 @@ std::string magnetometer_config(const std::string& base_link, std::span<const Sa
 
 std::string magnetometer_columns(std::string_view text, const std::string& file) {
   const detail::ReadTable table = detail::read_table(text, file);
-  const std::set<std::string> names = {"m",        "mag",   "magn",         "magnetic", "field",
-                                       "magnetic", "magno", "magnetometer", "b",        "compass"};
+  const std::set<std::string> names = {"m",     "mag",          "magn", "magnetic", "field",
+                                       "magno", "magnetometer", "b",    "compass"};
   std::array<std::string, 3> found;
   for (const detail::TableColumn& column : table.columns) {
     std::vector<std::string> words = column.words;
+    // The Greek letter of microtesla may be in no word.
+    const bool is_tesla = !words.empty() && words.back() == "t" &&
+                          std::all_of(column.name.begin(), column.name.end(),
+                                      [](char c) { return static_cast<unsigned char>(c) < 128; });
     if (!words.empty() && (words.back() == "ut" || words.back() == "t")) words.pop_back();
     if (words.empty() || !column.is_number) continue;
     std::string last = words.back();
@@ -91,6 +95,12 @@ std::string magnetometer_columns(std::string_view text, const std::string& file)
     if (!last.empty()) words.push_back(last);
     const auto is_name = [&](const std::string& word) { return names.contains(word); };
     if (words.empty() || !std::all_of(words.begin(), words.end(), is_name)) continue;
+    if (is_tesla) {
+      throw InputError(
+          fmt::format("{}: column '{}' is in tesla, by its name; a magnetometer is read in "
+                      "microtesla: multiply the column by 1e6 and call it '..._uT'",
+                      file, column.name));
+    }
     if (found[axis].empty()) found[axis] = column.name;
   }
   if (std::any_of(found.begin(), found.end(), [](const auto& name) { return name.empty(); })) {

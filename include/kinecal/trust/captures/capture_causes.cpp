@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/captures/capture_causes.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -304,7 +305,16 @@ struct JointCause {
       if (name.starts_with(kBefore)) names.emplace(name.substr(kBefore.size()));
     }
   }
+  names.erase("time");  // a clock does not slip
   return names;
+}
+
+/// Unit of a condition or of a joint's position; empty where it is not known.
+[[nodiscard]] std::string unit_of_number(const Robot& robot, const std::string& name) {
+  if (robot.has_joint(name)) return std::string(unit_of(robot, name));
+  if (name.ends_with("wheel") || name.ends_with("_yaw") || name.ends_with("angle")) return "rad";
+  const bool is_length = name.ends_with("_x") || name.ends_with("_y") || name.ends_with("distance");
+  return is_length && !name.starts_with("mag_") ? "m" : "";
 }
 
 /// A sample in which one condition or joint position is another.
@@ -350,10 +360,11 @@ struct JointCause {
     const double change = nearest_change(trials, sample, name);
     const TrialRows after = trials({with_condition(sample, name, change)}).front();
     if (!after.fits() || after.rows.size() != now.rows.size()) continue;
-    char text[200];
-    (void)std::snprintf(text, sizeof text, "'%s' advanced by %.3g too %s%s", name.c_str(),
-                        std::abs(change), change < 0.0 ? "much" : "little",
-                        is_wheel ? ": it slipped" : "");
+    const std::string unit = unit_of_number(problem.robot(), name);
+    const std::string text =
+        fmt::format("'{}' advanced by {:.3g}{} too {}{}", name, std::abs(change),
+                    unit.empty() ? "" : " " + unit, change < 0.0 ? "much" : "little",
+                    is_wheel ? ": it slipped" : "");
     explain.push_back({after.rows.squaredNorm(), text});
   }
   if (!explain.empty()) {

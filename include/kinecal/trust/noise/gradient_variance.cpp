@@ -82,18 +82,15 @@ struct GradientSums {
 };
 
 /// S of few groups: widened for each parameter so that two standard deviations are the 95 % of Student's distribution, with one
-/// degree of freedom less than groups that show the parameter.  Its quantile by Abramowitz, Stegun 26.7.5.
+/// degree of freedom less than groups that show the parameter, and one at least: see student_widening().
 /// Source: Satterthwaite 1946; Bell, McCaffrey, Bias reduction in standard errors for linear regression with multi-stage
 /// samples, 2002.
 [[nodiscard]] Eigen::MatrixXd widened(const GradientSums& sums, const Eigen::MatrixXd& scatter) {
-  constexpr double kZ = 1.96, kFirst = (kZ * kZ + 1.0) / 4.0,
-                   kSecond = (5.0 * kZ * kZ * kZ * kZ + 16.0 * kZ * kZ + 3.0) / 96.0, kLeast = 2.0;
   const Eigen::MatrixXd& of = sums.influence;
   Eigen::VectorXd factor = Eigen::VectorXd::Ones(of.rows());
   for (Eigen::Index p = 0; p < of.rows(); ++p) {
     if (!(sums.squares(p) > 0.0)) continue;
-    const double freedom = std::max(kLeast, sums.sum(p) * sums.sum(p) / sums.squares(p) - 1.0);
-    factor(p) = 1.0 + (kFirst + kSecond / freedom) / freedom;
+    factor(p) = student_widening(sums.sum(p) * sums.sum(p) / sums.squares(p) - 1.0);
   }
   const Eigen::MatrixXd back =
       Spectrum(of.transpose() * of).pseudo_inverse() * of.transpose() * factor.asDiagonal() * of;
@@ -210,6 +207,24 @@ struct WhitenedFit {
 
 }  // namespace
 }  // namespace detail
+
+double student_widening(double freedom) {
+  constexpr double kZ = 1.959964, kOne = 12.706205 / kZ, kTwo = 4.302653 / kZ;
+  if (freedom < 3.0) {
+    const double nu = std::max(1.0, freedom), three = student_widening(3.0);
+    const bool is_below_two = nu < 2.0;
+    const double far = std::log(is_below_two ? kOne : kTwo),
+                 near = std::log(is_below_two ? kTwo : three), at_far = is_below_two ? 1.0 : 0.5,
+                 at_near = is_below_two ? 0.5 : 1.0 / 3.0;
+    return std::exp(near + (far - near) * (1.0 / nu - at_near) / (at_far - at_near));
+  }
+  constexpr double z2 = kZ * kZ, z4 = z2 * z2, z6 = z4 * z2, z8 = z4 * z4;
+  constexpr double kFirst = (z2 + 1.0) / 4.0, kSecond = (5.0 * z4 + 16.0 * z2 + 3.0) / 96.0,
+                   kThird = (3.0 * z6 + 19.0 * z4 + 17.0 * z2 - 15.0) / 384.0,
+                   kFourth = (79.0 * z8 + 776.0 * z6 + 1482.0 * z4 - 1920.0 * z2 - 945.0) / 92160.0;
+  const double by = 1.0 / freedom;
+  return 1.0 + by * (kFirst + by * (kSecond + by * (kThird + by * kFourth)));
+}
 
 FeatureLinks feature_links(const AnyProblem& problem, const LinearFit& fit,
                            std::span<const Sample> samples) {

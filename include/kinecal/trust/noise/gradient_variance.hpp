@@ -40,6 +40,12 @@ struct GradientVariance {
   bool by_links = false;     ///< features of a link err together, more than those of a pose
 };
 
+/// The 97.5 % quantile of Student's distribution over that of the normal one.  Its series, four terms from three degrees of
+/// freedom; below, from the exact ones of 1 and 2, its logarithm linear in 1 / nu, within 3 %.
+/// @param freedom  degrees of freedom nu; below one it counts as one
+/// Source: Abramowitz, Stegun, Handbook of Mathematical Functions, 26.7.5.
+[[nodiscard]] double student_widening(double freedom);
+
 /// The links on which features lie.
 struct FeatureLinks {
   int count = 0;  ///< number of links; zero: no sensor of the problem observes the robot's surface

@@ -154,10 +154,13 @@ PoseGroups by_run(const PoseGroups& poses, std::span<const Sample> samples) {
           numbers.try_emplace(run, static_cast<int>(numbers.size())).first->second);
     }
     runs.count = static_cast<int>(numbers.size());
-  } else if (samples.size() > kFewest * kStretches &&
-             std::count_if(samples.begin(), samples.end(), is_compared) + 1 >=
-                 std::ssize(samples)) {
+  }
+  // The first of each run is compared with nothing before it.
+  if (runs.count < static_cast<int>(kFewest) && samples.size() > kFewest * kStretches &&
+      std::count_if(samples.begin(), samples.end(), is_compared) + std::max(1, runs.count) >=
+          std::ssize(samples)) {
     runs.count = static_cast<int>(kStretches);
+    runs.of_sample.clear();
     for (std::size_t s = 0; s < samples.size(); ++s) {
       runs.of_sample.push_back(static_cast<int>(s * kStretches / samples.size()));
     }

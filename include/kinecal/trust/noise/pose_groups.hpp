@@ -36,7 +36,8 @@ struct PoseGroups {
 [[nodiscard]] PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> samples);
 
 /// Poses by run (kRun): the floor, the tyres and the tracking of a run err alike.  Of samples that are compared with those
-/// before and have no run, twenty stretches of the recording are runs.  As they are where there are fewer than five.
+/// before, and are of fewer than five runs or of none, twenty stretches of the recording are runs if there are more than a hundred.  As
+/// they are where there are still fewer than five.
 [[nodiscard]] PoseGroups by_run(const PoseGroups& poses, std::span<const Sample> samples);
 
 /// Number of such poses, one of several samples among them; of samples, where nothing moves.
