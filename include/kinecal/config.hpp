@@ -24,6 +24,7 @@
 #include "kinecal/config/doubts/check_weight.hpp"
 #include "kinecal/config/doubts/enough_samples.hpp"
 #include "kinecal/config/doubts/exchanged_joints.hpp"
+#include "kinecal/config/doubts/field_unit.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/config/doubts/ignored_urdf.hpp"
 #include "kinecal/config/doubts/initial_values.hpp"
