@@ -22,6 +22,7 @@
 #include "kinecal/config/doubts/accelerometer_axes.hpp"
 #include "kinecal/config/doubts/check_offsets.hpp"
 #include "kinecal/config/doubts/check_weight.hpp"
+#include "kinecal/config/doubts/drive_readings.hpp"
 #include "kinecal/config/doubts/enough_samples.hpp"
 #include "kinecal/config/doubts/exchanged_joints.hpp"
 #include "kinecal/config/doubts/field_unit.hpp"

@@ -160,6 +160,14 @@ TEST(InitialBase, ColumnsHaveTheirMeaningByName) {
               HasSubstr("  track_yaw: {column: theta_deg, unit: degrees}\n"));
   EXPECT_THAT(refused("odom_x,odom_y,odom_yaw,x,y,yaw\n0,0,3.1,0,0,0\n0,0,-3.1,0,0,0\n"),
               HasSubstr("column 'odom_yaw' jumps by a full turn in row 2"));
+  EXPECT_THAT(refused("run,enc_l,enc_r,x,y,yaw\nleft,0,0,0,0,0\nback,1,1,0,0,0\n"),
+              HasSubstr("column 'run' has words, such as 'left': number the runs"));
+  EXPECT_THAT(
+      base_columns("odom_x,odom_y,odom_yaw,x,y,yaw\n0,0,0,0,0,0\n0,0,6.3,0,0,0.1\n0,0,12.6,0,"
+                   "0,0.2\n",
+                   "d.csv"),
+      HasSubstr("odom_yaw: odom_yaw"))
+      << "degrees, which do not wrap";
 }
 
 }  // namespace

@@ -281,6 +281,8 @@ void check_column(const TableColumn& column, const std::string& condition,
   if (condition != "odom_yaw" && condition != "gyro_yaw") return;
   const bool is_degrees = column.unit == NamedUnit::degrees;
   const double turn = is_degrees ? 360.0 : 2.0 * std::numbers::pi;
+  const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
+  if (column.values.empty() || *most - *least > 1.1 * turn) return;  // it counts turns, or degrees
   for (std::size_t i = 1; i < column.values.size(); ++i) {
     const double by = column.values[i] - column.values[i - 1];
     if (!(std::abs(std::abs(by) - turn) < 0.1 * turn)) continue;
@@ -289,6 +291,13 @@ void check_column(const TableColumn& column, const std::string& condition,
                     "unwrap it",
                     file, column.name, i + 1, condition));
   }
+}
+
+/// The first cell of a column that is not empty.
+[[nodiscard]] std::string first_text(const TableColumn& column) {
+  const auto found = std::find_if(column.texts.begin(), column.texts.end(),
+                                  [](const std::string& text) { return !text.empty(); });
+  return found == column.texts.end() ? "" : *found;
 }
 
 /// A column, with its unit if it is none of a condition.
@@ -387,8 +396,12 @@ std::string base_columns(std::string_view text, const std::string& file) {
   std::vector<std::string> unused;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const TableColumn& column = table.columns[c];
-    const std::string condition =
-        column.is_number && !column.per_second ? base_condition(column.name) : "";
+    const std::string named = column.per_second ? "" : base_condition(column.name);
+    if (named == kRun && !column.is_number) {
+      throw InputError(fmt::format("{}: column '{}' has words, such as '{}': number the runs", file,
+                                   column.name, first_text(column)));
+    }
+    const std::string condition = column.is_number ? named : "";
     if (condition.empty() || !columns.emplace(condition, column_text(column)).second) {
       unused.push_back(column.name);
     } else {
