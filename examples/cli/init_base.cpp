@@ -174,6 +174,8 @@ BaseAnswers answer(const InitOptions& options, const BaseInput& in) {
   answers.has_gyro = has.has_gyro;
   answers.turns = has.turns;
   answers.runs = has.runs;
+  answers.sideways = has.sideways;
+  answers.steers = has.steers;
   if (is_recorded) {
     say("from the recording: {}{}{}\n", answers.drive.empty() ? "a gyroscope" : answers.drive,
         answers.has_gyro && !answers.drive.empty() ? " and a gyroscope" : "",
@@ -201,6 +203,12 @@ BaseAnswers answer(const InitOptions& options, const BaseInput& in) {
       answers.sizes.wheelbase = size(options.wheelbase, known.wheelbase, "--wheelbase",
                                      "How far apart are the axles, metres?");
     }
+  }
+  if (is_recorded && !answers.drive.empty() && !has.turns && !has.runs) {
+    throw InputError(fmt::format(
+        "{}: the base neither turned by a radian nor went straight by 0.3 m; drive turns in place "
+        "and straight runs",
+        options.from.front()));
   }
   answers.gyro_scale = options.gyro_scale.value_or(0.0);
   set_mount(options, in, answers);

@@ -20,7 +20,7 @@ std::string listed(const std::vector<Choice>& all) {
   return text;
 }
 
-void print(const Question& question) {
+void print_question(const Question& question) {
   if (question.choices.size() == 1) {
     say("{} [{}]: ", question.asks, question.choices.front().answer);
     std::fflush(stdout);
@@ -71,7 +71,7 @@ std::string ask(const Question& question, const WhyNot& why_not) {
                                                : "; use one of " + listed(question.choices)));
   }
   for (;;) {
-    print(question);
+    print_question(question);
     std::string line;
     if (!std::getline(std::cin, line)) {
       throw InputError(question.option + ": not answered; nothing is written");

@@ -93,6 +93,32 @@ TEST(MagnetometerStart, IsRefusedWhereNothingTurned) {
   EXPECT_THAT(found.errors, ElementsAre(HasSubstr("all the same; record while it turns")));
 }
 
+TEST(MagnetometerStart, ReadingsInAnotherUnitAreNamed) {
+  const auto found_of = [](double factor, bool all_ways) {
+    Diagnostics found;
+    std::vector<Sample> samples = SimulatedMagnetometer{.all_ways = all_ways}.samples(100, 1);
+    for (Sample& sample : samples) {
+      for (const char* name : {"mag_x", "mag_y", "mag_z"}) sample.conditions[name] *= factor;
+    }
+    (void)begun(std::move(samples), found);
+    return found;
+  };
+  for (const bool all_ways : {true, false}) {
+    EXPECT_THAT(found_of(1.0, all_ways).errors, IsEmpty());
+    EXPECT_THAT(found_of(1.0, all_ways).doubts, IsEmpty());
+    for (const auto& [factor, text] :
+         {std::pair(1e-2, "are the readings gauss?  Multiply them by 100"),
+          {1e-6, "are the readings tesla?  Multiply them by 1e+06"},
+          {1e3, "are the readings nanotesla?  Multiply them by 0.001"},
+          {1e6, "a driver that publishes them as tesla"}}) {
+      EXPECT_THAT(found_of(factor, all_ways).errors, ElementsAre(HasSubstr(text))) << factor;
+    }
+  }
+  EXPECT_THAT(found_of(2e4, true).errors,
+              ElementsAre(HasSubstr("are the readings counts of the sensor?")));
+  EXPECT_THAT(found_of(2.0, true).doubts, ElementsAre(HasSubstr("the earth's is 22 to 67")));
+}
+
 TEST(MagnetometerStart, AFieldBesideAllGainsIsAnError) {
   const auto errors = [](const std::vector<Sample>& of, const std::string& free) {
     Diagnostics found;

@@ -137,6 +137,61 @@ TEST(CalibrateBase, AWidthThatIsNotGivenIsNotThatOfTheDriver) {
   EXPECT_THAT(text, testing::Not(HasSubstr("odom:")));
 }
 
+constexpr const char* kWheelsAndGyro =
+    "- {name: base, type: differential_to_pose, wheel_radius: 0.0605, track_width: 0.37476, x: "
+    "0.2, translation_scale: 500, rotation_scale: 500}\n"
+    "- {name: imu, type: gyro_to_pose}\n";
+constexpr const char* kScales =
+    "base_track_width_scale, base_left_rollout_scale, base_right_rollout_scale, imu_scale, "
+    "imu_bias";
+
+/// The calibration of a drive in which some readings keep a value.
+CalibratedRobot with_frozen(const std::vector<std::string>& names) {
+  std::vector<Sample> samples = simulate_base(wrong_base(), all_runs(), 6).samples;
+  for (Sample& sample : samples) {
+    for (const std::string& name : names) sample.conditions[name] = 0.25;
+  }
+  return calibrate_robot(setup_of(kScales, kWheelsAndGyro, std::move(samples)));
+}
+
+TEST(CalibrateBase, WhatNothingDeterminesIsNotUsed) {
+  for (const auto& [names, block] :
+       {std::pair(std::vector<std::string>{"left_wheel", "right_wheel"}, "'base'"),
+        {{"gyro_yaw"}, "'imu'"}}) {
+    const CalibratedRobot calibrated = with_frozen(names);
+    EXPECT_EQ(calibrated.judgement.verdict, Grade::do_not_use) << block;
+    EXPECT_THAT(calibrated.judgement.reasons,
+                testing::Contains(testing::AllOf(HasSubstr(block), HasSubstr("do not determine"))));
+  }
+  EXPECT_NE(with_frozen({"left_wheel"}).judgement.verdict, Grade::good);
+}
+
+/// Turns alone determine the ratio of rollout and track width: neither is written.
+TEST(CalibrateBase, WhatIsNotDeterminedIsNotWritten) {
+  const std::vector<BaseRun> turns{{0.0, 0.5, 12.0}, {0.0, -0.5, 12.0}};
+  CalibrationSetup setup =
+      setup_of(kScales, kWheelsAndGyro, simulate_base(wrong_base(), turns, 6).samples);
+  setup.urdf_text = "<robot name=\"r\"><link name=\"base_link\"/></robot>";
+  const CalibratedRobot calibrated = calibrate_robot(std::move(setup));
+  EXPECT_EQ(calibrated.judgement.verdict, Grade::do_not_use);
+  const int track = calibrated.result.table.index("base_track_width_scale");
+  EXPECT_THAT(base_calibration_yaml(calibrated.setup.calibration, calibrated.result.table,
+                                    {{track, std::numeric_limits<double>::infinity()}},
+                                    {{"base", 0.37476}}),
+              testing::AllOf(HasSubstr("# track_width_scale: not determined\n"),
+                             testing::Not(HasSubstr("odom")), HasSubstr("imu_scale: ")));
+}
+
+TEST(CalibrateBase, TwoRowsAreTooFew) {
+  std::vector<Sample> samples = simulate_base(wrong_base(), all_runs(), 6).samples;
+  samples.resize(2);
+  const CalibratedRobot calibrated =
+      calibrate_robot(setup_of("imu_bias", kWheelsAndGyro, std::move(samples)));
+  EXPECT_EQ(calibrated.judgement.verdict, Grade::do_not_use);
+  EXPECT_THAT(calibrated.judgement.reasons,
+              testing::Contains(HasSubstr("'imu': 1 interval is too few to check 1 parameter")));
+}
+
 TEST(CalibrateBase, SizesArePositive) {
   Diagnostics found;
   (void)parse_config(

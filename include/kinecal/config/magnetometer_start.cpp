@@ -11,6 +11,7 @@
 #include <cmath>
 #include <string>
 
+#include "kinecal/config/doubts/field_unit.hpp"
 #include "kinecal/errors/magnetic_field.hpp"
 
 namespace kinecal {
@@ -146,14 +147,15 @@ void begin_magnetometer(Config& config, std::vector<Sample>& samples, Diagnostic
   const detail::Scatter of(samples);
   if (of.readings.size() < 2) return;
   const auto [bias, field] = detail::linear_start(of);
-  constexpr double kLeast = 1e-3;  // microtesla
-  if (!(field > kLeast)) {
+  constexpr double kLeast = 1e-4;  // of the readings, whatever their unit
+  if (!(field > kLeast * of.mean.norm())) {
     diagnostics.error(
         blocks.front()->place,
         "the readings of the magnetometer are all the same; record while it turns through "
         "a full circle at least");
     return;
   }
+  detail::check_field_unit(field, plane.has_value(), blocks.front()->place, diagnostics);
   constexpr std::array<const char*, 3> kBias = {"bias_x", "bias_y", "bias_z"};
   for (BlockConfig* block : blocks) {
     auto& numbers = block->numbers;

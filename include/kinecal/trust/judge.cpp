@@ -8,6 +8,7 @@
 #include <string>
 
 #include "kinecal/trust/captures/ruined.hpp"
+#include "kinecal/trust/judge_blocks.ipp"
 #include "kinecal/trust/judge_noise.hpp"
 #include "kinecal/trust/judge_places.ipp"
 #include "kinecal/trust/judge_values.hpp"
@@ -289,6 +290,9 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
     if (last) detail::judge_directions(assessments[s], judgement);
     detail::judge_determined(assessments[s], last, judgement);
     detail::judge_freedom(assessments[s], judgement);
+    if (last) {
+      detail::judge_blocks(*step.problem, step.free, assessments[s], result.table, judgement);
+    }
     if (last) detail::judge_held_out(assessments[s], judgement);
     if (last) detail::judge_folds(assessments[s], judgement);
     if (last) detail::judge_views(assessments[s], result.table, judgement);

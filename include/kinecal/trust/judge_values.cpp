@@ -10,7 +10,9 @@
 namespace kinecal::detail {
 
 double change_of(const Parameter& p) {
-  if (p.unit != "1" || !(1.0 + p.initial > 0.0)) return p.value - p.initial;
+  if (p.unit != "1") return p.value - p.initial;
+  if (p.lower > 0.0 && p.initial > 0.0) return p.value / p.initial - 1.0;
+  if (!(1.0 + p.initial > 0.0)) return p.value - p.initial;
   return (1.0 + p.value) / (1.0 + p.initial) - 1.0;
 }
 

@@ -9,7 +9,8 @@
 
 namespace kinecal::detail {
 
-/// The change of a parameter; for a ratio 1 + v, relative.
+/// The change of a parameter; relative for a ratio: 1 + v, or v itself if its bounds are above zero, as of the scales of a
+/// base, which begin at 1.
 [[nodiscard]] double change_of(const Parameter& p);
 
 /// Of a zero that is about a quarter or half turn off: how a servo was screwed on.

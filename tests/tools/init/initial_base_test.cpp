@@ -92,6 +92,45 @@ TEST(InitialBase, ARecordingSaysWhatItHas) {
   EXPECT_TRUE(recorded_base(turning).turns);
 }
 
+/// A tracked sensor off the axis moves when the base turns in place, and noise is no motion.
+TEST(InitialBase, TurnsAloneAreNoStraightRuns) {
+  const std::vector<BaseRun> turns{{0.0, 0.5, 12.0}, {0.0, -1.5, 4.0}}, rest{{0.0, 0.0, 200.0}};
+  const RecordedBase turning = recorded_base(simulate_base(SimulatedBase{}, turns, 1).samples);
+  EXPECT_TRUE(turning.turns);
+  EXPECT_FALSE(turning.runs);
+  const RecordedBase still = recorded_base(simulate_base(SimulatedBase{}, rest, 1).samples);
+  EXPECT_FALSE(still.turns || still.runs);
+}
+
+TEST(InitialBase, WhatADriveToTheSideOrSteeringShowsIsFree) {
+  std::vector<Sample> samples(40);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double at = 0.1 * static_cast<double>(i);
+    samples[i].conditions = {{"front_left_wheel", at},
+                             {"front_right_wheel", at},
+                             {"rear_left_wheel", at},
+                             {"rear_right_wheel", at},
+                             {"steering", 0.05}};
+  }
+  EXPECT_FALSE(recorded_base(samples).sideways || recorded_base(samples).steers);
+  for (std::size_t i = 20; i < samples.size(); ++i) {
+    samples[i].conditions["front_left_wheel"] = samples[i].conditions["rear_right_wheel"] = 2.0;
+    samples[i].conditions["steering"] = -0.5;
+  }
+  const RecordedBase has = recorded_base(samples);
+  EXPECT_TRUE(has.sideways && has.steers);
+  BaseAnswers answers;
+  answers.seen = "pose";
+  for (const auto& [drive, scale] :
+       {std::pair("mecanum", "base_lateral_scale"), {"tricycle", "base_steering_scale"}}) {
+    answers.drive = drive;
+    answers.sideways = answers.steers = false;
+    EXPECT_THAT(initial_base(answers), HasSubstr(std::string("# held: ") + scale));
+    answers.sideways = answers.steers = true;
+    EXPECT_THAT(initial_base(answers), HasSubstr(std::string("\n- ") + scale));
+  }
+}
+
 TEST(InitialBase, DimensionsAreThoseOfTheUrdf) {
   const std::string two =
       urdf_with({{"l_wheel", "0 0.18738 0.06"}, {"r_wheel", "0 -0.18738 0.06"}});
@@ -121,6 +160,14 @@ TEST(InitialBase, ColumnsHaveTheirMeaningByName) {
               HasSubstr("  track_yaw: {column: theta_deg, unit: degrees}\n"));
   EXPECT_THAT(refused("odom_x,odom_y,odom_yaw,x,y,yaw\n0,0,3.1,0,0,0\n0,0,-3.1,0,0,0\n"),
               HasSubstr("column 'odom_yaw' jumps by a full turn in row 2"));
+  EXPECT_THAT(refused("run,enc_l,enc_r,x,y,yaw\nleft,0,0,0,0,0\nback,1,1,0,0,0\n"),
+              HasSubstr("column 'run' has words, such as 'left': number the runs"));
+  EXPECT_THAT(
+      base_columns("odom_x,odom_y,odom_yaw,x,y,yaw\n0,0,0,0,0,0\n0,0,6.3,0,0,0.1\n0,0,12.6,0,"
+                   "0,0.2\n",
+                   "d.csv"),
+      HasSubstr("odom_yaw: odom_yaw"))
+      << "degrees, which do not wrap";
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "kinecal/config/doubts/accelerometer_axes.hpp"
 #include "kinecal/config/doubts/check_weight.hpp"
+#include "kinecal/config/doubts/drive_readings.hpp"
 #include "kinecal/config/doubts/enough_samples.hpp"
 #include "kinecal/config/doubts/ignored_urdf.hpp"
 #include "kinecal/config/doubts/initial_values.hpp"
@@ -28,6 +29,7 @@ void find_doubts(const CalibrationInput& input, Diagnostics& diagnostics) {
     detail::check_urdf_units(config, robot, urdf_text, urdf, diagnostics);
   }
   detail::check_weight(config, samples, diagnostics);
+  detail::check_drive_readings(config, samples, diagnostics);
   if (samples.empty() || before > 0) return;  // the rest needs models that match the robot
   const std::vector<detail::UsedJoint> joints = detail::used_joints(config, robot, samples);
   detail::check_joint_positions(detail::with_initial_zeros(config, joints), samples, diagnostics);

@@ -27,6 +27,7 @@ struct Calibration;
 class ParameterTable;
 
 /// The content of the file; empty if no error block is of a base.  Of two blocks with the same key, the first counts.
+/// What samples do not determine is a comment: any value would fit.  Then `odom` and `imu` are left out, too.
 /// @param deviations  standard deviations by table index; infinite: not determined
 /// @param drivers     what the driver has, by error block: its track width, metres, or its scale of the gyroscope; those that
 ///                    are not positive are not known

@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <map>
 #include <numbers>
+#include <optional>
 
 #include "kinecal/files/recordings/base_conditions.hpp"
 #include "kinecal/files/urdf/visuals.hpp"
@@ -56,38 +57,110 @@ template <class Has>
   return base;
 }
 
-/// How far a condition goes in all, between samples of the same run.
-[[nodiscard]] double way_of(std::span<const Sample> samples, const std::string& name) {
-  double way = 0.0;
-  const auto run = [](const Sample& sample) {
-    const auto found = sample.conditions.find(kRun);
-    return found == sample.conditions.end() ? 0.0 : found->second;
-  };
-  const Sample* last = nullptr;
-  for (const Sample& sample : samples) {
-    const auto now = sample.conditions.find(name);
-    if (now == sample.conditions.end() || !std::isfinite(now->second)) continue;
-    if (last != nullptr && run(*last) == run(sample)) {
-      way +=
-          std::abs(std::remainder(now->second - last->conditions.at(name), 2.0 * std::numbers::pi));
-    }
-    last = &sample;
-  }
-  return way;
+/// The condition of a sample, if it is a number.
+[[nodiscard]] std::optional<double> number_in(const Sample& sample, const std::string& name) {
+  const auto found = sample.conditions.find(name);
+  if (found == sample.conditions.end() || !std::isfinite(found->second)) return std::nullopt;
+  return found->second;
+}
+[[nodiscard]] bool has_some(std::span<const Sample> samples, const std::string& name) {
+  return std::any_of(samples.begin(), samples.end(),
+                     [&](const Sample& sample) { return number_in(sample, name).has_value(); });
 }
 
-/// True if a base did something in a recording, or if the recording does not say.
-/// @param names  of conditions that each say it
-[[nodiscard]] bool went(std::span<const Sample> samples, const Names& names, double least) {
-  bool is_said = false;
-  double most = 0.0;
-  for (const std::string& name : names) {
-    is_said = is_said || std::any_of(samples.begin(), samples.end(), [&](const Sample& sample) {
-                return sample.conditions.count(name) > 0;
-              });
-    most = std::max(most, way_of(samples, name));
+/// How far a number goes within runs, in all: in each from its least to its largest, so that noise does not add up.
+/// @param value  of a sample; nullopt if it has none
+/// @param angle  true if it may jump by full turns
+template <class Value>
+[[nodiscard]] double way_of(std::span<const Sample> samples, const Value& value, bool angle) {
+  double way = 0.0, run = 0.0, last = 0.0, at = 0.0, least = 0.0, most = 0.0;
+  bool begins = true;
+  for (const Sample& sample : samples) {
+    const std::optional<double> now = value(sample);
+    if (!now) continue;
+    const double of = number_in(sample, std::string(kRun)).value_or(0.0);
+    if (begins || of != run) {
+      way += most - least;
+      at = least = most = 0.0;
+    } else {
+      at += angle ? std::remainder(*now - last, 2.0 * std::numbers::pi) : *now - last;
+      least = std::min(least, at);
+      most = std::max(most, at);
+    }
+    begins = false;
+    run = of;
+    last = *now;
   }
-  return !is_said || most > least;
+  return way + most - least;
+}
+
+/// How far a base turned by any of these angles; nullopt if the samples have none.
+[[nodiscard]] std::optional<double> turned(std::span<const Sample> samples) {
+  std::optional<double> most;
+  for (const char* name : {"odom_yaw", "track_yaw", "gyro_yaw"}) {
+    if (!has_some(samples, name)) continue;
+    const double way = way_of(
+        samples, [&](const Sample& sample) { return number_in(sample, name); }, true);
+    most = std::max(most.value_or(0.0), way);
+  }
+  return most;
+}
+
+/// How far a base went straight, metres: the lengths of stretches within which it hardly turned, less what a sensor beside
+/// its axis moves by turning; nullopt if the samples do not have this pose.
+/// @param pose  "odom" or "track"
+[[nodiscard]] std::optional<double> went(std::span<const Sample> samples, const std::string& pose) {
+  constexpr double kStraight = 0.3, kArm = 0.5;  // radians; metres of the sensor beside the axis
+  double way = 0.0, longest = 0.0;
+  const Sample* first = nullptr;
+  for (const Sample& sample : samples) {
+    const auto number = [&](const Sample& of, const char* axis) {
+      return number_in(of, pose + axis);
+    };
+    if (!number(sample, "_x") || !number(sample, "_y") || !number(sample, "_yaw")) continue;
+    const auto by = [&](const char* axis) { return *number(sample, axis) - *number(*first, axis); };
+    const std::string run(kRun);
+    const double turn =
+        first == nullptr ? HUGE_VAL : std::abs(std::remainder(by("_yaw"), 2.0 * std::numbers::pi));
+    if (!(turn < kStraight) || number_in(*first, run) != number_in(sample, run)) {
+      way += longest;
+      longest = 0.0;
+      first = &sample;
+    } else {
+      longest = std::max(longest, std::hypot(by("_x"), by("_y")) - kArm * turn);
+    }
+  }
+  return first == nullptr ? std::optional<double>() : way + longest;
+}
+
+/// How far what mecanum wheels roll takes a base to the side, over how far it goes in all.
+[[nodiscard]] double part_to_the_side(std::span<const Sample> samples) {
+  const auto rolled = [&](double fl, double fr, double rl, double rr) {
+    return way_of(
+        samples,
+        [=](const Sample& sample) -> std::optional<double> {
+          const auto a = number_in(sample, "front_left_wheel"),
+                     b = number_in(sample, "front_right_wheel"),
+                     c = number_in(sample, "rear_left_wheel"),
+                     d = number_in(sample, "rear_right_wheel");
+          if (!a || !b || !c || !d) return std::nullopt;
+          return fl * *a + fr * *b + rl * *c + rr * *d;
+        },
+        false);
+  };
+  const double ahead = rolled(1, 1, 1, 1), left = rolled(-1, 1, 1, -1);
+  return left > 0.0 ? left / std::max(left, ahead) : 0.0;
+}
+
+/// From the least to the largest of a condition; zero without it.
+[[nodiscard]] double range_of(std::span<const Sample> samples, const std::string& name) {
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (const Sample& sample : samples) {
+    const std::optional<double> now = number_in(sample, name);
+    if (now) least = std::min(least, *now);
+    if (now) most = std::max(most, *now);
+  }
+  return std::max(0.0, most - least);
 }
 
 /// The radius of a link's first cylinder or sphere; zero if it has none.
@@ -123,7 +196,8 @@ template <class Has>
     add(of.turns, "base_wheelbase_scale", "the true wheelbase over the one below", kNoTurn);
     add(of.runs, "base_rollout_scale", "what a wheel rolls, over the radius below", kNoRun);
     text += free_line("base_steering_offset", "added to the steering angle, rad");
-    held += held_line("base_steering_scale", "it takes several steering angles");
+    add(of.steers, "base_steering_scale", "of the steering angle, true over reported",
+        "it takes several steering angles");
   } else if (!of.drive.empty()) {
     add(of.turns, "base_track_width_scale",
         is_odometry ? "the true track width over that of the driver"
@@ -139,7 +213,8 @@ template <class Has>
           kNoRun);
     }
     if (of.drive == "mecanum") {
-      held += held_line("base_lateral_scale", "it takes drives to the side");
+      add(of.sideways, "base_lateral_scale",
+          "what wheels roll to the side, over what they do ahead", "it takes drives to the side");
     }
   }
   if (of.drive.empty()) {
@@ -206,6 +281,8 @@ void check_column(const TableColumn& column, const std::string& condition,
   if (condition != "odom_yaw" && condition != "gyro_yaw") return;
   const bool is_degrees = column.unit == NamedUnit::degrees;
   const double turn = is_degrees ? 360.0 : 2.0 * std::numbers::pi;
+  const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
+  if (column.values.empty() || *most - *least > 1.1 * turn) return;  // it counts turns, or degrees
   for (std::size_t i = 1; i < column.values.size(); ++i) {
     const double by = column.values[i] - column.values[i - 1];
     if (!(std::abs(std::abs(by) - turn) < 0.1 * turn)) continue;
@@ -214,6 +291,13 @@ void check_column(const TableColumn& column, const std::string& condition,
                     "unwrap it",
                     file, column.name, i + 1, condition));
   }
+}
+
+/// The first cell of a column that is not empty.
+[[nodiscard]] std::string first_text(const TableColumn& column) {
+  const auto found = std::find_if(column.texts.begin(), column.texts.end(),
+                                  [](const std::string& text) { return !text.empty(); });
+  return found == column.texts.end() ? "" : *found;
 }
 
 /// A column, with its unit if it is none of a condition.
@@ -235,8 +319,13 @@ RecordedBase recorded_base(std::span<const Sample> samples) {
     });
   };
   RecordedBase base = detail::recorded(has);
-  base.turns = detail::went(samples, {"odom_yaw", "track_yaw", "gyro_yaw"}, 1.0);
-  base.runs = detail::went(samples, {"odom_x", "odom_y", "track_x", "track_y"}, 0.3);
+  constexpr double kTurn = 1.0, kStraight = 0.3, kSide = 0.1, kSteers = 0.3;  // radians, metres
+  base.turns = detail::turned(samples).value_or(HUGE_VAL) > kTurn;
+  const auto by_odometry = detail::went(samples, "odom"), by_track = detail::went(samples, "track");
+  base.runs = (!by_odometry && !by_track) ||
+              std::max(by_odometry.value_or(0.0), by_track.value_or(0.0)) > kStraight;
+  base.sideways = detail::part_to_the_side(samples) > kSide;
+  base.steers = detail::range_of(samples, "steering") > kSteers;
   return base;
 }
 
@@ -307,8 +396,12 @@ std::string base_columns(std::string_view text, const std::string& file) {
   std::vector<std::string> unused;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const TableColumn& column = table.columns[c];
-    const std::string condition =
-        column.is_number && !column.per_second ? base_condition(column.name) : "";
+    const std::string named = column.per_second ? "" : base_condition(column.name);
+    if (named == kRun && !column.is_number) {
+      throw InputError(fmt::format("{}: column '{}' has words, such as '{}': number the runs", file,
+                                   column.name, first_text(column)));
+    }
+    const std::string condition = column.is_number ? named : "";
     if (condition.empty() || !columns.emplace(condition, column_text(column)).second) {
       unused.push_back(column.name);
     } else {

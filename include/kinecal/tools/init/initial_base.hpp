@@ -36,19 +36,23 @@ struct BaseAnswers {
   std::string seen;                ///< one of kBaseSeen
   bool has_gyro = false;           ///< a gyroscope, with times
   bool turns = true, runs = true;  ///< the drive turns, and goes somewhere
-  BaseSizes sizes;                 ///< nominal
-  double gyro_scale = 0.0;         ///< of its driver; zero: not known
+  bool sideways = false,
+       steers = false;      ///< it goes to the side (mecanum), steers by several angles
+  BaseSizes sizes;          ///< nominal
+  double gyro_scale = 0.0;  ///< of its driver; zero: not known
   std::optional<std::array<double, 3>>
       mount;               ///< x, y, yaw of the sensor on the base; nullopt: not known
   std::string mount_from;  ///< where they are from, for a comment
 };
 
 /// What samples of a drive have: the drives, in the order of kBaseDrives, that a block can take, what is seen, a gyroscope, and
-/// whether the base turned by more than a radian and went farther than 0.3 m.
+/// whether the base turned by more than a radian, went straight farther than 0.3 m, to the side by a tenth of its way, and
+/// steered by angles that differ by more than 0.3 radians.
 struct RecordedBase {
   std::vector<std::string> drives, seen;
   bool has_gyro = false;
   bool turns = true, runs = true;
+  bool sideways = false, steers = false;
 };
 /// What these samples have.
 [[nodiscard]] RecordedBase recorded_base(std::span<const Sample> samples);
