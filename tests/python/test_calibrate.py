@@ -143,6 +143,13 @@ class Calibration(unittest.TestCase):
         with self.assertRaisesRegex(RuntimeError, "enough"):
             kinecal.calibrate(scene.robot(), self.samples, scene.CONFIG, progress=stop)
 
+    def test_zeros_go_where_they_are_asked_to(self) -> None:
+        origins = kinecal.calibrate(scene.robot(), self.samples, scene.CONFIG, offsets="origin")
+        self.assertEqual(origins.urdf, self.result.robot.urdf)
+        self.assertIn("rising", self.result.urdf)
+        with self.assertRaisesRegex(kinecal.KinecalError, "offsets: 'somewhere' is none of"):
+            kinecal.calibrate(scene.robot(), self.samples, scene.CONFIG, offsets="somewhere")
+
     def test_several_at_once(self) -> None:
         found: list[str] = []
         threads = [
@@ -190,6 +197,17 @@ class Calibration(unittest.TestCase):
             kinecal.calibrate(scene.robot(), misspelt, scene.CONFIG)
         with self.assertRaisesRegex(kinecal.KinecalError, "axes: 'w' is none of x, y, z"):
             kinecal.free("a", axes="x w")
+        for arguments, message in (
+            ((None, self.samples), "a robot is a file"),
+            ((scene.robot(), [1]), "samples: Samples or a file are expected"),
+            ((scene.robot(), self.samples[:0]), "samples: there are none"),
+            ((scene.robot(), self.samples, 3), "neither a file"),
+            ((scene.robot(), self.samples, ""), "neither a file"),
+        ):
+            with self.assertRaisesRegex(kinecal.KinecalError, message):
+                kinecal.calibrate(*arguments)
+        with self.assertRaisesRegex(kinecal.KinecalError, "hold: a list is expected"):
+            kinecal.calibrate(scene.robot(), self.samples, scene.CONFIG, hold="elbow")
 
     def test_degrees_are_refused(self) -> None:
         q, points = scene.measured()

@@ -1,8 +1,10 @@
 """The program's commands as functions."""
 
+import json
 import os
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
@@ -115,18 +117,24 @@ class Commands(unittest.TestCase):
         with self.assertRaisesRegex(kinecal.KinecalError, "images:1: float64"):
             kinecal.detect({"features": []}, [np.zeros((4, 4))])
 
+    def test_a_robot_of_a_text_is_no_file_of_its_name(self) -> None:
+        before = os.getcwd()
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+            try:
+                Path("robot.urdf").write_text(ROBOT.read_text())
+                chosen = kinecal.select_poses(
+                    scene.robot(), json.dumps(scene.CONFIG.to_dict()), self.samples, count=5, simulate=0, random=5
+                )
+            finally:
+                os.chdir(before)
+        assert chosen.samples is not None
+        self.assertEqual(sorted(chosen.samples.joints), ["elbow", "shoulder", "slide"])
+
     def test_without_the_program(self) -> None:
-        saved = {name: os.environ.get(name) for name in ("KINECAL", "PATH")}
-        try:
-            os.environ.update({"KINECAL": "/nowhere/kinecal", "PATH": ""})
-            outcome = kinecal.run("--version")  # beside the package
-            self.assertIn(kinecal.__version__, outcome.text)
-        except kinecal.KinecalError as error:
-            self.assertIn("the program 'kinecal' is not found", str(error))
-        finally:
-            os.environ.update({name: value for name, value in saved.items() if value is not None})
-            if saved["KINECAL"] is None:
-                del os.environ["KINECAL"]
+        with unittest.mock.patch.dict(os.environ, {"KINECAL": "/nowhere/kinecal"}):
+            with self.assertRaisesRegex(kinecal.KinecalError, "/nowhere/kinecal: is no program"):
+                kinecal.run("--version")
 
 
 if __name__ == "__main__":

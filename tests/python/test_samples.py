@@ -39,6 +39,10 @@ class ArraysAndFiles(unittest.TestCase):
         for chosen in (slice(3, 9), np.array([5, 2]), mask, -1):
             np.testing.assert_array_equal(samples[chosen].positions, np.atleast_2d(q[chosen]))
         self.assertEqual(len(samples[:2] + samples[10:13]), 5)
+        self.assertEqual(len(sum([samples[:2], samples[5:6]])), 3)
+        with self.assertRaises(TypeError):
+            samples + 3
+        self.assertEqual(len(pickle.loads(pickle.dumps(samples[:0]))), 0)
         self.assertEqual(len(list(samples[:3])), 3)
         with self.assertRaises(IndexError):
             samples[60]
@@ -87,7 +91,12 @@ class ArraysAndFiles(unittest.TestCase):
         poses = np.tile(np.eye(4), (4, 1, 1))
         poses[3, 0, 0] = 2.0
         wrong = [
-            ("samples: positions:3: 'elbow' is nan; remove the row", (nan, JOINTS), {}),
+            ("samples.positions:3: 'elbow' is nan; remove the row", (nan, JOINTS), {}),
+            ("joints: 'a' is given twice", (q, ["a", "a", "b"]), {}),
+            ("joints: 'abc' is no list of names", (q, "abc"), {}),
+            ("points: a dict by names is expected, not ndarray", (q, JOINTS), {"points": points}),
+            ("ids['tracker']: 1.5 is no whole number from 0 on", (q, JOINTS),
+             {"points": {"tracker": points}, "ids": {"tracker": [1.5, 2, 3, 4]}, **frame}),
             ("joints: the names of the columns of positions are needed", (q,), {}),
             ("positions: has shape (4, 3); (n, 2) is expected", (q, ["a", "b"]), {}),
             ("points['tracker']: has shape (4, 4, 2); (4, k, 3) is expected", (q, JOINTS),
@@ -111,6 +120,30 @@ class ArraysAndFiles(unittest.TestCase):
             with self.assertRaises(kinecal.KinecalError) as raised:
                 kinecal.Samples(*arguments, **options)
             self.assertEqual(str(raised.exception), message)
+
+    def test_what_is_masked_was_not_seen(self) -> None:
+        q, points = scene.measured(3)
+        masked = np.ma.masked_less(points, points[0, 0, 0] + 1e-12) if points[0, 0, 0] < 0 else np.ma.masked_greater(points, 0)
+        samples = kinecal.Samples(q, JOINTS, points={"tracker": masked}, frames={"tracker": "t"})
+        np.testing.assert_array_equal(np.isnan(samples.features("tracker")[0]).any(axis=2), masked.mask.any(axis=2))
+
+    def test_cameras_are_checked(self) -> None:
+        k = [[600.0, 0, 320], [0, 600, 240], [0, 0, 1]]
+        good = {"K": k, "width": 640, "height": 480}
+        pixels = {"camera": np.full((2, 3, 2), 100.0)}
+        wrong = {
+            "'d' is no key of a camera": {**good, "d": [0.1]},
+            "is expected": {**good, "K": [[600.0, 1, 320], [0, 600, 240], [0, 0, 1]]},
+            "640.5 is no whole number from 1 on": {**good, "width": 640.5},
+            "'foo' is no distortion_model": {**good, "distortion_model": "foo"},
+            "is outside of 240 x 640 pixels": {**good, "width": 240, "height": 640},
+        }
+        for message, camera in wrong.items():
+            with self.assertRaises(kinecal.KinecalError) as raised:
+                kinecal.Samples(
+                    np.zeros((2, 1)), ["a"], pixels=pixels, frames={"camera": "c"}, cameras={"camera": camera}
+                )
+            self.assertIn(message, str(raised.exception))
 
     def test_a_file_that_is_wrong_is_named_with_its_line(self) -> None:
         with tempfile.TemporaryDirectory() as folder:

@@ -70,6 +70,13 @@ CalibrationOptions options_of(const py::dict& given, const py::object& progress)
   take("hold", options.hold);
   take("between", options.between);
   take("mesh_paths", options.mesh_paths);
+  constexpr OffsetStyle kOffsets[] = {OffsetStyle::as_read, OffsetStyle::origin,
+                                      OffsetStyle::rising, OffsetStyle::ros2_control};
+  constexpr Reader kReaders[] = {Reader::driver, Reader::urdf, Reader::origins};
+  options.offsets = kOffsets[given["offsets"].cast<std::size_t>()];
+  if (const auto reader = given["reader"].cast<std::size_t>()) {
+    options.reader = kReaders[reader - 1];
+  }
   if (given.contains("search") && given["search"].cast<bool>()) options.search = Search::always;
   return options;
 }
@@ -78,6 +85,7 @@ CalibrationOptions options_of(const py::dict& given, const py::object& progress)
 struct Calibrated {
   CalibratedRobot robot;
   std::string config;
+  OffsetStyle offsets = OffsetStyle::as_read;
 };
 
 /// What calibrate() and calibrate_arrays() have in common.
@@ -112,8 +120,8 @@ std::shared_ptr<Calibrated> calibrate(const std::string& urdf_text, const std::s
   task.setup.samples = samples.samples;
   PreparedCalibration prepared = prepare(std::move(task.setup), options, samples.diagnostics);
   prepared.diagnostics.throw_if_errors();
-  return std::make_shared<Calibrated>(
-      Calibrated{calibrate_robot(std::move(prepared), options), config.value_or("")});
+  return std::make_shared<Calibrated>(Calibrated{calibrate_robot(std::move(prepared), options),
+                                                 config.value_or(""), options.offsets});
 }
 
 /// The same with arrays of which only parts become samples at a time: see calibrate_log().
@@ -138,7 +146,7 @@ std::shared_ptr<Calibrated> calibrate_arrays(const std::string& urdf_text,
   PreparedLog prepared = prepare_log(std::move(task.setup), std::move(log), options);
   prepared.draw.diagnostics.throw_if_errors();
   return std::make_shared<Calibrated>(
-      Calibrated{calibrate_log(std::move(prepared), options), config});
+      Calibrated{calibrate_log(std::move(prepared), options), config, options.offsets});
 }
 
 /// What the block compares, by features: sample (n), feature's place or id (n), residual (n, components).
@@ -179,13 +187,11 @@ py::dict all_residuals(const CalibratedRobot& calibrated) {
   return blocks;
 }
 
-/// Files as the program writes them by default.
-ResultFileOptions as_program() {
-  return {.offsets = OffsetStyle::as_read,
-          .date = {},
-          .deviations = {},
-          .in_servos = {},
-          .drivers = {}};
+/// How files are written.
+ResultFileOptions file_options(OffsetStyle offsets) {
+  ResultFileOptions options;
+  options.offsets = offsets;
+  return options;
 }
 
 /// The configuration of a result, as YAML: the one that a search found, or that was given.
@@ -197,7 +203,7 @@ std::string config_text(const Calibrated& calibrated) {
 std::vector<OutputFile> all_files(const Calibrated& calibrated) {
   const std::vector<OutputFile> copies = {{kOriginalUrdf, calibrated.robot.setup.urdf_text},
                                           {kConfigCopy, config_text(calibrated)}};
-  return calibrated_files(calibrated.robot, as_program(), copies);
+  return calibrated_files(calibrated.robot, file_options(calibrated.offsets), copies);
 }
 
 /// By name, in the order in which a folder is written.
@@ -224,9 +230,8 @@ void write_folder(const std::string& folder, const py::dict& files) {
 
 /// @param into_origins  zeros go into the origins of joints, so that the text alone is the robot
 std::string urdf_of(const Calibrated& calibrated, bool into_origins) {
-  ResultFileOptions options = as_program();
-  if (into_origins) options.offsets = OffsetStyle::origin;
-  return calibrated_urdf(calibrated.robot, options);
+  return calibrated_urdf(calibrated.robot,
+                         file_options(into_origins ? OffsetStyle::origin : calibrated.offsets));
 }
 
 std::string page_of(const Calibrated& calibrated, const std::vector<std::string>& mesh_paths,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def numbers(values: ArrayLike, name: str) -> Array:
-    """An array of float64, row by row, without a copy where it is one already.
+    """An array of float64, row by row, without a copy where it is one already; what is masked is NaN.
 
     Raises:
         KinecalError: if it has no numbers: texts, objects, complex numbers, rows of different lengths.
@@ -27,6 +28,8 @@ def numbers(values: ArrayLike, name: str) -> Array:
         raise KinecalError(f"{name}: rows of different lengths ({error})") from None
     if array.dtype.kind not in "fiu" and array.size > 0:
         raise KinecalError(f"{name}: {array.dtype} are no real numbers")
+    if isinstance(values, np.ma.MaskedArray):
+        return np.where(np.ma.getmaskarray(values), np.nan, array.astype(np.float64))  # type: ignore[no-untyped-call]
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
@@ -51,3 +54,30 @@ def finite(array: Array, name: str, columns: list[str]) -> Array:
             f"{name}:{row + 1}: '{columns[column]}' is {array[row, column]}; remove the row"
         )
     return array
+
+
+def names(values: object, what: str) -> list[str]:
+    """A list of different names.
+
+    Raises:
+        KinecalError: for one text in the place of a list, what is no text, an empty name, or the same one twice.
+    """
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        raise KinecalError(f"{what}: {values!r} is no list of names")
+    listed = list(values)
+    for name in listed:
+        if not isinstance(name, str) or not name.isprintable() or not name.strip():
+            raise KinecalError(f"{what}: {name!r} is no name")
+        if listed.count(name) > 1:
+            raise KinecalError(f"{what}: '{name}' is given twice")
+    return listed
+
+
+def by_name(values: object, what: str) -> Mapping[str, Any]:
+    """A dict by names; None: an empty one."""
+    if values is None:
+        return {}
+    if not isinstance(values, Mapping):
+        raise KinecalError(f"{what}: a dict by names is expected, not {type(values).__name__}")
+    names(values, what)
+    return values

@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str, int, float], Any]
 
+#: As OffsetStyle and Reader of the library number them.
+_OFFSETS = ("", "origin", "rising", "ros2_control")
+_READERS = ("", "driver", "urdf", "origins")
+
 #: Arrays of more samples are calibrated part by part, as ``kinecal calibrate-log`` does: they are not copied.
 _MANY = 50_000
 _ROWS = 10_000  #: of a part
@@ -286,6 +290,8 @@ def calibrate(
     mesh_paths: Sequence[str | os.PathLike[str]] = (),
     search: bool = False,
     draw: int = 3000,
+    offsets: str = "",
+    reader: str = "",
 ) -> Result:
     """Calibrates a robot and judges the result, as ``kinecal calibrate`` does.
 
@@ -306,6 +312,8 @@ def calibrate(
         mesh_paths: folders of the URDF's packages.
         search: find out what the samples support, even if the configuration frees something.
         draw: of more than 50 000 samples of arrays: those on which they are judged.
+        offsets: where the URDF holds zeros: "origin", "rising" or "ros2_control"; "": where it has them already.
+        reader: of the files, whose errors are judged: "driver", "urdf" or "origins"; "": urdf.
 
     Raises:
         KinecalError: with all errors of the input.
@@ -313,8 +321,22 @@ def calibrate(
     """
     if not isinstance(robot, Robot):
         robot = Robot(robot)
-    if not isinstance(samples, Samples):
+    if isinstance(samples, (str, os.PathLike)):
         samples = Samples.read(samples)
+    if not isinstance(samples, Samples):
+        raise KinecalError(f"samples: Samples or a file are expected, not {type(samples).__name__}")
+    if len(samples) == 0:
+        raise KinecalError("samples: there are none")
+    if offsets not in _OFFSETS:
+        raise KinecalError(f"offsets: '{offsets}' is none of " + ", ".join(_OFFSETS))
+    if reader not in _READERS:
+        raise KinecalError(f"reader: '{reader}' is none of " + ", ".join(_READERS))
+    for what, number in (("threads", threads), ("starts", starts), ("folds", folds), ("draw", draw)):
+        if not isinstance(number, int) or number < 0:
+            raise KinecalError(f"{what}: {number!r} is no whole number from 0 on")
+    for what, listed in (("hold", hold), ("between", between), ("mesh_paths", mesh_paths)):
+        if isinstance(listed, (str, bytes)):
+            raise KinecalError(f"{what}: a list is expected, not {listed!r}")
     text, name = config_text(config)
     paths = [os.fspath(path) for path in mesh_paths]
     options: Mapping[str, Any] = {
@@ -328,6 +350,8 @@ def calibrate(
         "mesh_paths": paths,
         "search": search,
         "draw": draw,
+        "offsets": _OFFSETS.index(offsets),
+        "reader": _READERS.index(reader),
     }
     arrays = samples._arrays
     if arrays is not None and text is not None and not search and len(samples) > _MANY:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Union
@@ -48,9 +48,16 @@ class Frame:
     """A frame that may be wrong: that of a joint, or one that the URDF does not have, such as a board on the flange."""
 
     name: str
-    axes: Sequence[str] = AXES  #: those that are free
+    axes: Union[str, Sequence[str]] = AXES  #: those that are free; "x y z", or a list
     xyz: Sequence[float] | None = None  #: metres, where it begins
     rpy: Sequence[float] | None = None  #: radians, where it begins
+
+    def __post_init__(self) -> None:
+        axes = self.axes.split() if isinstance(self.axes, str) else list(self.axes)
+        for axis in axes:
+            if axis not in AXES:
+                raise KinecalError(f"axes: '{axis}' is none of " + ", ".join(AXES))
+        object.__setattr__(self, "axes", tuple(axes))
 
 
 def free(*names: str, axes: Union[str, Sequence[str], None] = None) -> list[Union[str, Frame]]:
@@ -62,11 +69,7 @@ def free(*names: str, axes: Union[str, Sequence[str], None] = None) -> list[Unio
     """
     if axes is None:
         return list(names)
-    chosen = axes.split() if isinstance(axes, str) else list(axes)
-    for axis in chosen:
-        if axis not in AXES:
-            raise KinecalError(f"axes: '{axis}' is none of " + ", ".join(AXES))
-    return [Frame(name, tuple(chosen)) for name in names]
+    return [Frame(name, axes) for name in names]
 
 
 @dataclass(frozen=True)
@@ -103,7 +106,8 @@ class Config:
 
     def to_dict(self) -> dict[str, Any]:
         """The keys of calibrate.yaml."""
-        frames = [item for item in self.free if isinstance(item, Frame)]
+        free = _flat(self.free)
+        frames = [item for item in free if isinstance(item, Frame)]
         result: dict[str, Any] = {
             "base_link": self.base_link,
             "models": [model._as_dict() for model in self.models],
@@ -112,20 +116,30 @@ class Config:
                 for block in self.error_blocks
             ],
         }
-        if self.free:
-            result["free_params"] = [item for item in self.free if isinstance(item, str)]
+        if free:
+            result["free_params"] = [item for item in free if isinstance(item, str)]
             result["free_frames"] = [
                 {"name": frame.name, **{axis: axis in frame.axes for axis in AXES}}
                 for frame in frames
             ]
-        initial = [_initial(frame) for frame in frames if frame.xyz or frame.rpy]
+        initial = [_initial(frame) for frame in frames if frame.xyz is not None or frame.rpy is not None]
         if initial:
             result["free_frames_initial_values"] = initial
         return {**result, **self.options}
 
 
+def _flat(free: Any) -> list[Union[str, Frame]]:
+    """Names and frames; lists of them, as free() gives, too."""
+    if isinstance(free, (str, Frame)):
+        return [free]
+    if not isinstance(free, Iterable):
+        raise KinecalError(f"free: {free!r} is neither a name nor a Frame")
+    return [item for part in free for item in _flat(part)]
+
+
 def _initial(frame: Frame) -> dict[str, Any]:
-    numbers = [*(frame.xyz or (0.0, 0.0, 0.0)), *(frame.rpy or (0.0, 0.0, 0.0))]
+    zero = (0.0, 0.0, 0.0)
+    numbers = [*(zero if frame.xyz is None else frame.xyz), *(zero if frame.rpy is None else frame.rpy)]
     if len(numbers) != len(AXES):
         raise KinecalError(f"frame '{frame.name}': xyz and rpy are three numbers each")
     return {"name": frame.name, **{axis: float(x) for axis, x in zip(AXES, numbers)}}
@@ -133,6 +147,11 @@ def _initial(frame: Frame) -> dict[str, Any]:
 
 #: What stands for a configuration: built, a dict, a file, or the text of YAML.
 AnyConfig = Union[Config, Mapping[str, Any], str, "os.PathLike[str]"]
+
+
+def is_text(config: str) -> bool:
+    """True for YAML, false for the name of a file."""
+    return "\n" in config or ": " in config or config.lstrip().startswith("{")
 
 
 def config_text(config: AnyConfig | None) -> tuple[str | None, str]:
@@ -144,10 +163,12 @@ def config_text(config: AnyConfig | None) -> tuple[str | None, str]:
     if isinstance(config, Mapping):
         try:
             return json.dumps(config, indent=1) + "\n", "the configuration"
-        except TypeError as error:
+        except (TypeError, ValueError) as error:
             raise KinecalError(f"the configuration: {error}") from None
-    text = os.fspath(config)
-    if "\n" in text or ": " in text or text.lstrip().startswith("{"):
+    if not isinstance(config, (str, os.PathLike)) or str(config) == "":
+        raise KinecalError(f"the configuration: {config!r} is neither a file, YAML, a dict nor a Config")
+    text = str(os.fspath(config))
+    if is_text(text):
         return text, "the configuration"
     try:
         return Path(text).read_text(encoding="utf-8"), text

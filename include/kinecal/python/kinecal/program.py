@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Union
 
 from . import _kinecal
 from .calibration import Result, calibrate
-from .config import AnyConfig, config_text
+from .config import AnyConfig, Config, config_text, is_text
 from .errors import KinecalError
 from .robot import Robot
 from .samples import Samples
@@ -54,10 +54,12 @@ def program() -> str:
     here = Path(__file__).resolve().parent  # of a wheel, of a build tree, of Debian's packages
     folders = [here, *(here.parents[i] for i in (1, 3) if i < len(here.parents))]
     beside = [str(folder / "bin" / "kinecal") for folder in folders]
-    places = [os.environ.get("KINECAL", ""), *beside, shutil.which("kinecal") or ""]
-    for place in places:
+    chosen = os.environ.get("KINECAL")
+    for place in [chosen] if chosen else [*beside, shutil.which("kinecal") or ""]:
         if place and os.access(place, os.X_OK) and Path(place).is_file():
             return place
+    if chosen:
+        raise KinecalError(f"{chosen}: is no program; KINECAL in the environment names it")
     raise KinecalError("the program 'kinecal' is not found: install it, or set KINECAL to its file")
 
 
@@ -102,15 +104,13 @@ class _Call:
 
     def robot(self, robot: AnyRobot) -> str:
         if isinstance(robot, Robot):
-            if Path(robot.file).is_file():
-                return robot.file
-            robot = robot.urdf
+            return robot._path or self.text("robot.urdf", robot.urdf)
         text = os.fspath(robot)
         return self.text("robot.urdf", text) if "<" in text else text
 
     def config(self, config: AnyConfig, name: str = "calibrate.yaml") -> str:
-        if isinstance(config, os.PathLike) or (isinstance(config, str) and Path(config).is_file()):
-            return os.fspath(config)
+        if isinstance(config, (str, os.PathLike)) and not is_text(str(config)):
+            return str(os.fspath(config))
         text, _ = config_text(config)
         return self.text(name, text or "")
 
@@ -125,18 +125,29 @@ class _Call:
         done = run(*arguments, "--report", file)
         return Outcome(done.code, done.text, json.loads(file.read_text(encoding="utf-8")))
 
+    def flags(self, options: Mapping[str, Any]) -> list[str]:
+        """Options of the program: ``count=30, keep_outliers=True`` are ``--count 30 --keep-outliers``."""
+        words = []
+        for name, value in options.items():
+            if value is None or value is False:
+                continue
+            words.append("--" + name.replace("_", "-"))
+            if value is not True:
+                words += self.words(value, name)
+        return words
 
-def _flags(options: Mapping[str, Any]) -> list[str]:
-    """Options of the program: ``count=30, keep_outliers=True`` are ``--count 30 --keep-outliers``."""
-    words = []
-    for name, value in options.items():
-        if value is None or value is False:
-            continue
-        words.append("--" + name.replace("_", "-"))
-        if value is not True:
-            several = isinstance(value, Sequence) and not isinstance(value, str)
-            words += [str(item) for item in value] if several else [str(value)]
-    return words
+    def words(self, value: Any, name: str) -> list[str]:
+        if isinstance(value, Robot):
+            return [self.robot(value)]
+        if isinstance(value, Result):
+            return [self.result(value, name)]
+        if isinstance(value, (Config, Mapping)):
+            return [self.config(value, f"{name}.yaml")]
+        if isinstance(value, Samples):
+            return self.samples(value, name)
+        if isinstance(value, Sequence) and not isinstance(value, str):
+            return [word for item in value for word in self.words(item, name)]
+        return [str(value)]
 
 
 def identify(robot: AnyRobot, samples: AnySamples, config: AnyConfig | None = None, **options: Any) -> Result:
@@ -161,7 +172,7 @@ def verify(result: AnyResult, samples: AnySamples, **options: Any) -> Outcome:
     """
     with _folder() as own:
         call = _Call(own)
-        words = ["verify", call.result(result, "result"), *call.samples(samples), *_flags(options)]
+        words = ["verify", call.result(result, "result"), *call.samples(samples), *call.flags(options)]
         return call.run(*words, report=True)
 
 
@@ -169,7 +180,7 @@ def evaluate(result: AnyResult, samples: AnySamples, **options: Any) -> Outcome:
     """How a result fits other samples, without solving; ``options`` are those of ``kinecal evaluate``."""
     with _folder() as own:
         call = _Call(own)
-        words = ["evaluate", call.result(result, "result"), *call.samples(samples), *_flags(options)]
+        words = ["evaluate", call.result(result, "result"), *call.samples(samples), *call.flags(options)]
         return call.run(*words, report=True)
 
 
@@ -177,7 +188,7 @@ def compare(earlier: AnyResult, later: AnyResult, **options: Any) -> Outcome:
     """Which parameters of two results differ by more than chance explains; ``options`` are those of ``kinecal compare``."""
     with _folder() as own:
         call = _Call(own)
-        words = ["compare", call.result(earlier, "earlier"), call.result(later, "later"), *_flags(options)]
+        words = ["compare", call.result(earlier, "earlier"), call.result(later, "later"), *call.flags(options)]
         return call.run(*words, report=True)
 
 
@@ -197,7 +208,7 @@ def _poses(command: str, robot: AnyRobot, config: AnyConfig | None, samples: Any
             words += ["--config", call.config(config)]
         if samples is not None:
             words += ["--samples", *call.samples(samples)]
-        done = call.run(*words, *_flags(options))
+        done = call.run(*words, *call.flags(options))
         chosen = Samples._of(_kinecal.read_poses(str(output))) if output.exists() else None
         return Poses(done.code, done.text, {}, chosen)
 
@@ -242,7 +253,7 @@ def detect(
             words += ["--images", _image_folder(images, call)]
         if poses is not None:
             words += ["--poses", _pose_table(poses, call)]
-        call.run(*words, *_flags(options))
+        call.run(*words, *call.flags(options))
         return Samples.read(output)
 
 
@@ -258,7 +269,7 @@ def simulate(robot: AnyRobot, folder: str | os.PathLike[str], **options: Any) ->
     """
     with _folder() as own:
         call = _Call(own)
-        call.run("simulate", call.robot(robot), "--output", os.fspath(folder), *_flags(options))
+        call.run("simulate", call.robot(robot), "--output", os.fspath(folder), *call.flags(options))
         return Path(folder)
 
 
@@ -282,7 +293,7 @@ def init(robot: AnyRobot | None = None, samples: AnySamples | None = None, **opt
             words += ["--urdf", call.robot(robot)]
         if samples is not None:
             words += ["--from", *call.samples(samples)]
-        call.run(*words, *_flags(options))
+        call.run(*words, *call.flags(options))
         return {file.name: file.read_text(encoding="utf-8") for file in sorted(made.iterdir())}
 
 
@@ -292,7 +303,7 @@ def grade(episodes: Sequence[str | os.PathLike[str]] | str | os.PathLike[str], *
     with _folder() as own:
         call = _Call(own)
         files = [episodes] if isinstance(episodes, (str, os.PathLike)) else list(episodes)
-        return call.run("grade", *(os.fspath(file) for file in files), *_flags(options), report=True)
+        return call.run("grade", *(os.fspath(file) for file in files), *call.flags(options), report=True)
 
 
 def _image_folder(images: str | os.PathLike[str] | Sequence[ArrayLike], call: _Call) -> str:

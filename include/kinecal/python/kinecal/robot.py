@@ -42,8 +42,12 @@ class Robot:
     """
 
     def __init__(self, urdf: str | os.PathLike[str]) -> None:
-        text, name = os.fspath(urdf), "robot.urdf"
+        if not isinstance(urdf, (str, os.PathLike)):
+            raise KinecalError(f"a robot is a file or the text of a URDF, not {type(urdf).__name__}")
+        text, name = str(os.fspath(urdf)), "robot.urdf"
+        self._path: str | None = None  #: of its file
         if "<" not in text:
+            self._path = text
             text, name = _kinecal.read_urdf_text(text), text
         self._robot = _kinecal.Robot(text, name)
         self._joints = [Joint(**joint) for joint in self._robot.joints]
@@ -151,15 +155,20 @@ class Robot:
     ) -> tuple[Array, Array]:
         import numpy as np
 
+        from .arrays import names as checked
         from .arrays import numbers
 
         if isinstance(q, Mapping):
             if joints is not None:
                 raise KinecalError("joints: q has names already")
             joints = list(q)
-            columns = np.broadcast_arrays(*(numbers(q[name], f"q['{name}']") for name in q))
+            arrays = [numbers(q[name], f"q['{name}']") for name in q]
+            try:
+                columns = np.broadcast_arrays(*arrays)
+            except ValueError:
+                raise KinecalError("q: arrays of different lengths") from None
             q = np.stack(columns, axis=-1) if columns else np.zeros((1, 0))
-        names = self.joint_names if joints is None else list(joints)
+        names = self.joint_names if joints is None else checked(joints, "joints")
         self._check_names(names)
         array = numbers(q, "q")
         if array.ndim not in (1, 2) or array.shape[-1] != len(names):
@@ -181,9 +190,6 @@ class Robot:
                 raise KinecalError(f"'{name}' is no joint of {self.name}{_nearest(name, known)}")
             if known[name].mimic:
                 raise KinecalError(f"'{name}' follows '{known[name].mimic}': give that one")
-        twice = {name for name in names if list(names).count(name) > 1}
-        if twice:
-            raise KinecalError(f"joints: '{sorted(twice)[0]}' is given twice")
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _robot_from, (self.urdf, self.file)

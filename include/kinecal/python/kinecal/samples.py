@@ -58,22 +58,25 @@ class Samples:
         stamps: ArrayLike | None = None,
         name: str = "samples",
     ) -> None:
-        from .arrays import finite, shaped
+        from .arrays import by_name, finite, shaped
 
         names, rows = _positions(positions, joints)
-        finite(rows, f"{name}: positions", names)
-        given = [("points", points), ("pixels", pixels), ("poses", poses)]
-        known = {sensor for _, arrays in given for sensor in arrays or {}}
+        finite(rows, f"{name}.positions", names)
+        given = [
+            (kind, by_name(arrays, kind))
+            for kind, arrays in (("points", points), ("pixels", pixels), ("poses", poses))
+        ]
+        known = {sensor for _, arrays in given for sensor in arrays}
         for what, by_sensor in (("frames", frames), ("ids", ids), ("cameras", cameras)):
-            for sensor in by_sensor or {}:
+            for sensor in by_name(by_sensor, what):
                 if sensor not in known:
                     raise KinecalError(f"{what}: '{sensor}' has neither points, pixels nor poses")
         sensors = []
         for kind, arrays in given:
-            for sensor, array in (arrays or {}).items():
+            for sensor, array in arrays.items():
                 features = _features(array, kind, sensor, len(rows))
                 frame = (frames or {}).get(sensor)
-                if frame is None:
+                if not isinstance(frame, str) or not frame:
                     raise KinecalError(
                         f"frames: '{sensor}' is missing: the link in which its {kind} are given"
                     )
@@ -81,7 +84,7 @@ class Samples:
                 sensors.append(_sensor(sensor, frame, features, (ids or {}).get(sensor), camera))
         by_condition = {
             key: shaped(array, f"conditions['{key}']", (len(rows),))
-            for key, array in (conditions or {}).items()
+            for key, array in by_name(conditions, "conditions").items()
         }
         times = None if stamps is None else shaped(stamps, "stamps", (len(rows),))
         self._arrays: _kinecal.SampleArrays | None = _kinecal.SampleArrays(
@@ -135,6 +138,9 @@ class Samples:
         rows = list(records)
         if not rows:
             raise KinecalError("records: there are none")
+        for i, row in enumerate(rows):
+            if not isinstance(row, Mapping):
+                raise KinecalError(f"records:{i + 1}: is {type(row).__name__}, not a dict")
         joints = list(rows[0].get("positions", {}))
         table = np.full((len(rows), len(joints)), np.nan)
         for i, row in enumerate(rows):
@@ -215,9 +221,16 @@ class Samples:
         return (self[i] for i in range(len(self)))
 
     def __add__(self, other: Samples) -> Samples:
+        if not isinstance(other, Samples):
+            return NotImplemented
         both = self._samples.take(list(range(len(self))))
         both.append(other._samples)
         return Samples._of(both)
+
+    def __radd__(self, nothing: int) -> Samples:  # sum() begins with 0
+        if nothing != 0:
+            return NotImplemented
+        return self
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _samples_from, (_as_bytes(self),)
@@ -236,15 +249,33 @@ def _camera(sensor: str, camera: str | os.PathLike[str] | Mapping[str, Any]) -> 
     missing = [key for key in ("K", "width", "height") if key not in camera]
     if missing:
         raise KinecalError(f"{where}: '{missing[0]}' is missing")
+    unknown = set(camera) - {"K", "D", "width", "height", "distortion_model"}
+    if unknown:
+        raise KinecalError(f"{where}: '{min(map(str, unknown))}' is no key of a camera")
     k = shaped(camera["K"], f"{where}['K']", (3, 3))
+    if k[0, 1] != 0 or k[1, 0] != 0 or list(k[2]) != [0, 0, 1] or not (k[0, 0] > 0 and k[1, 1] > 0):
+        raise KinecalError(f"{where}['K']: [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] is expected")
     d = numbers(camera.get("D", []), f"{where}['D']").ravel()
+    model = str(camera.get("distortion_model", "plumb_bob" if len(d) > 0 else ""))
+    if model not in ("", "plumb_bob", "rational_polynomial", "equidistant", "fisheye"):
+        raise KinecalError(f"{where}: '{model}' is no distortion_model; plumb_bob, rational_polynomial, equidistant")
+    width, height = (_integer(camera[side], f"{where}['{side}']", 1) for side in ("width", "height"))
+    if not (0 < k[0, 2] < width and 0 < k[1, 2] < height):
+        raise KinecalError(f"{where}: cx, cy = {k[0, 2]}, {k[1, 2]} is outside of {width} x {height} pixels")
     values = [k[0, 0], k[1, 1], k[0, 2], k[1, 2], *d]
-    return _kinecal.Camera(
-        int(camera["width"]),
-        int(camera["height"]),
-        [float(value) for value in values],
-        str(camera.get("distortion_model", "plumb_bob" if len(d) > 0 else "")),
-    )
+    return _kinecal.Camera(width, height, [float(value) for value in values], model)
+
+
+def _integer(value: Any, name: str, least: int) -> int:
+    """A number without a fraction that fits into 32 bits."""
+    try:
+        number = int(value)
+        is_whole = number == value
+    except (TypeError, ValueError, OverflowError):
+        is_whole = False
+    if not is_whole or not least <= number < 2**31:
+        raise KinecalError(f"{name}: {value!r} is no whole number from {least} on")
+    return number
 
 
 def _positions(
@@ -252,20 +283,21 @@ def _positions(
 ) -> tuple[list[str], Array]:
     import numpy as np
 
+    from .arrays import names as checked
     from .arrays import shaped
 
     if isinstance(positions, Mapping):
         if joints is not None:
             raise KinecalError("joints: positions have names already")
-        names = list(positions)
+        names = checked(positions, "positions")
         columns = [shaped(positions[name], f"positions['{name}']", ("n",)) for name in names]
         if len({len(column) for column in columns}) > 1:
             raise KinecalError("positions: arrays of different lengths")
         return names, np.stack(columns, axis=1) if columns else np.zeros((0, 0))
     if joints is None:
         raise KinecalError("joints: the names of the columns of positions are needed")
-    rows = shaped(positions, "positions", ("n", len(joints)))
-    return list(joints), rows
+    names = checked(joints, "joints")
+    return names, shaped(positions, "positions", ("n", len(names)))
 
 
 def _features(array: ArrayLike, kind: str, sensor: str, count: int) -> Array:
@@ -297,12 +329,17 @@ def _features(array: ArrayLike, kind: str, sensor: str, count: int) -> Array:
 def _check_rotations(poses: Array, sensor: str) -> None:
     import numpy as np
 
-    rotations = poses[..., :3, :3]
+    seen = np.where(np.isnan(poses).any(axis=(-1, -2), keepdims=True), np.eye(4), poses)
+    rotations = seen[..., :3, :3]
     products = rotations @ np.swapaxes(rotations, -1, -2) - np.eye(3)
     wrong = (np.abs(products).max(axis=(-1, -2)) > 1e-3) | (np.linalg.det(rotations) < 0)
     if wrong.any():
         row = int(np.argwhere(wrong)[0][0])
         raise KinecalError(f"poses['{sensor}']:{row + 1}: its upper left is no rotation")
+    wrong = (np.abs(seen[..., 3, :] - [0.0, 0.0, 0.0, 1.0]) > 1e-6).any(axis=-1)
+    if wrong.any():
+        row = int(np.argwhere(wrong)[0][0])
+        raise KinecalError(f"poses['{sensor}']:{row + 1}: its last row is not 0 0 0 1")
 
 
 def _sensor(
@@ -312,7 +349,7 @@ def _sensor(
     ids: Sequence[int] | None,
     camera: str | os.PathLike[str] | Mapping[str, Any] | None,
 ) -> _kinecal.SensorArray:
-    numbers = [] if ids is None else [int(i) for i in ids]
+    numbers = [] if ids is None else [_integer(i, f"ids['{sensor}']", 0) for i in ids]
     if ids is not None and len(numbers) != features.shape[1]:
         raise KinecalError(f"ids['{sensor}']: {len(numbers)} for {features.shape[1]} features")
     if len(set(numbers)) != len(numbers):
@@ -354,6 +391,8 @@ def _conditions(rows: list[Mapping[str, Any]]) -> dict[str, list[float]]:
 
 
 def _as_bytes(samples: Samples) -> bytes:
+    if len(samples) == 0:
+        return b""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "samples.mcap"
         samples.save(file)
@@ -361,6 +400,8 @@ def _as_bytes(samples: Samples) -> bytes:
 
 
 def _samples_from(content: bytes) -> Samples:
+    if not content:
+        return Samples({})
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "samples.mcap"
         file.write_bytes(content)
