@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/captures/capture_causes.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -18,6 +16,7 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/geometry/ldlt.hpp"
 #include "kinecal/kinematics/robot.hpp"
+#include "kinecal/text/reading.hpp"
 #include "kinecal/trust/judge.hpp"
 
 namespace kinecal {
@@ -309,10 +308,10 @@ struct JointCause {
   return names;
 }
 
-/// Unit of a condition or of a joint's position; empty where it is not known.
+/// Unit of a condition or of a joint's position; empty where it is not known: a wheel may count ticks.
 [[nodiscard]] std::string unit_of_number(const Robot& robot, const std::string& name) {
   if (robot.has_joint(name)) return std::string(unit_of(robot, name));
-  if (name.ends_with("wheel") || name.ends_with("_yaw") || name.ends_with("angle")) return "rad";
+  if (name.ends_with("_yaw") || name.ends_with("angle")) return "rad";
   const bool is_length = name.ends_with("_x") || name.ends_with("_y") || name.ends_with("distance");
   return is_length && !name.starts_with("mag_") ? "m" : "";
 }
@@ -360,11 +359,10 @@ struct JointCause {
     const double change = nearest_change(trials, sample, name);
     const TrialRows after = trials({with_condition(sample, name, change)}).front();
     if (!after.fits() || after.rows.size() != now.rows.size()) continue;
-    const std::string unit = unit_of_number(problem.robot(), name);
-    const std::string text =
-        fmt::format("'{}' advanced by {:.3g}{} too {}{}", name, std::abs(change),
-                    unit.empty() ? "" : " " + unit, change < 0.0 ? "much" : "little",
-                    is_wheel ? ": it slipped" : "");
+    const std::string text = "'" + name + "' advanced by " +
+                             reading(std::abs(change), unit_of_number(problem.robot(), name)) +
+                             " too " + (change < 0.0 ? "much" : "little") +
+                             (is_wheel ? ": it slipped" : "");
     explain.push_back({after.rows.squaredNorm(), text});
   }
   if (!explain.empty()) {
