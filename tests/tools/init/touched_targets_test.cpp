@@ -31,7 +31,7 @@ namespace {
 constexpr InitTarget kTouched[] = {InitTarget::point,    InitTarget::sockets, InitTarget::plane,
                                    InitTarget::line,     InitTarget::sphere,  InitTarget::bar,
                                    InitTarget::distance, InitTarget::gravity};
-constexpr double kNoise = 2e-4;  // of the tip's place, metres
+constexpr double kTipNoise = 2e-4;  // of the tip's place, metres
 
 /// An arm of the examples, whose zeros are wrong, with a tip that is not in its URDF.
 class TouchingArm {
@@ -260,7 +260,7 @@ TEST_P(TouchedTarget, FindsTheZerosWithPlusMinusThatCover) {
   if (GetParam() != InitTarget::gravity) arms.push_back(six_joints());
   for (TouchingArm& arm : arms) {
     for (unsigned seed = 1; seed <= static_cast<unsigned>(test::repetitions(4, 2)); ++seed) {
-      const std::vector<Sample> samples = arm.samples(GetParam(), seed, kNoise);
+      const std::vector<Sample> samples = arm.samples(GetParam(), seed, kTipNoise);
       ASSERT_GE(samples.size(), 20u);
       const CalibratedRobot found = arm.calibrated(GetParam(), samples);
       EXPECT_TRUE(found.is_usable()) << found.judgement.reasons.front();
@@ -283,7 +283,7 @@ TEST(TouchedTargets, TwoHandsThatTouchShowTheZerosOfBothArms) {
   int count = 0;
   TouchingArm arms = two_arms(6);
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const std::vector<Sample> samples = arms.samples(InitTarget::point, seed, kNoise);
+    const std::vector<Sample> samples = arms.samples(InitTarget::point, seed, kTipNoise);
     const CalibratedRobot found = arms.calibrated(InitTarget::point, samples);
     EXPECT_TRUE(found.is_usable()) << found.judgement.reasons.front();
     const Errors errors = errors_of(arms, found);
@@ -306,7 +306,7 @@ TEST(TouchedTargets, TwoArmsInTheSameSocketsAreOneCalibration) {
   double sum = 0.0;
   int count = 0;
   for (unsigned seed = 1; seed <= static_cast<unsigned>(test::repetitions(6, 3)); ++seed) {
-    const std::vector<Sample> samples = arms.samples(InitTarget::sockets, seed, kNoise);
+    const std::vector<Sample> samples = arms.samples(InitTarget::sockets, seed, kTipNoise);
     ASSERT_GE(samples.size(), 40u);
     const CalibratedRobot found = arms.calibrated(InitTarget::sockets, samples);
     EXPECT_TRUE(found.is_usable()) << found.judgement.reasons.front();
@@ -341,7 +341,7 @@ TEST(TouchedTargets, OneThingInBothHandsFindsTheZerosWithPlusMinusThatCover) {
     const int draws = test::repetitions(5, 2);
     for (int seed = 1; seed <= draws; ++seed) {
       const std::vector<Sample> samples =
-          arms.samples(InitTarget::grip, static_cast<unsigned>(seed), kNoise);
+          arms.samples(InitTarget::grip, static_cast<unsigned>(seed), kTipNoise);
       ASSERT_GE(samples.size(), 20u);
       const CalibratedRobot found = arms.calibrated(InitTarget::grip, samples);
       EXPECT_TRUE(found.is_usable()) << found.judgement.reasons.front();
@@ -381,7 +381,7 @@ TEST(TouchedTargets, AKnownPlaceOnTheOwnBodyShowsTheFirstZeroToo) {
     const std::string shown = arm.shown(InitTarget::point);
     EXPECT_EQ(shown, std::string(shown.size() - 1, 'x') + '-');
     for (unsigned seed = 1; seed <= static_cast<unsigned>(test::repetitions(4, 2)); ++seed) {
-      const std::vector<Sample> samples = arm.samples(InitTarget::point, seed, kNoise);
+      const std::vector<Sample> samples = arm.samples(InitTarget::point, seed, kTipNoise);
       ASSERT_GE(samples.size(), 20u);
       const CalibratedRobot found = arm.calibrated(InitTarget::point, samples);
       EXPECT_TRUE(found.is_usable()) << found.judgement.reasons.front();
@@ -402,7 +402,7 @@ TEST(TouchedTargets, AKnownPlaceOnTheOwnBodyShowsTheFirstZeroToo) {
 TEST(TouchedTargets, APlaneTouchedFromOnePoseHasLargePlusMinus) {
   const auto uncertain = [](const char* where, TouchingArm arm) {
     const CalibratedRobot found =
-        arm.calibrated(InitTarget::plane, arm.samples(InitTarget::plane, 1, kNoise));
+        arm.calibrated(InitTarget::plane, arm.samples(InitTarget::plane, 1, kTipNoise));
     double sum = 0.0;
     int count = 0;
     for (const auto& [joint, wrong] : arm.wrong()) {
@@ -445,7 +445,7 @@ TEST(TouchedTargets, TheToolsCenterPointHasPlusMinusThatCover) {
     const int count = test::repetitions(30, 10);
     for (int seed = 1; seed <= count; ++seed) {
       std::vector<Sample> samples =
-          arm.samples(InitTarget::tool, static_cast<unsigned>(seed), kNoise);
+          arm.samples(InitTarget::tool, static_cast<unsigned>(seed), kTipNoise);
       samples.resize(poses);
       Eigen::MatrixXd left(3 * poses, 6);
       Eigen::VectorXd right(3 * poses);

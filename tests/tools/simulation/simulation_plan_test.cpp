@@ -17,7 +17,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-Robot shipped(const std::string& path) {
+Robot example_robot(const std::string& path) {
   return read_urdf(test::source_folder() + "/examples/" + path);
 }
 
@@ -35,7 +35,7 @@ std::pair<SimulationPlan, Diagnostics> plan_of_text(const std::string& text) {
   std::ofstream(path) << text;
   Diagnostics diagnostics;
   SimulationPlan plan =
-      read_simulation(shipped("robots/fetch/fetch.urdf"), path, "", 0, diagnostics);
+      read_simulation(example_robot("robots/fetch/fetch.urdf"), path, "", 0, diagnostics);
   return {std::move(plan), std::move(diagnostics)};
 }
 
@@ -45,7 +45,7 @@ TEST(SimulationPlan, EachShippedRobotWithACameraHasOne) {
        {"robots/fetch/fetch.urdf", "robots/ubr1/ubr1.urdf", "robots/pr2/pr2.urdf",
         "robots/panda/panda.urdf", "robots/tiago/tiago.urdf",
         "mobile_manipulator/mobile_manipulator.urdf"}) {
-    const Robot robot = shipped(urdf);
+    const Robot robot = example_robot(urdf);
     const bool on_hand = urdf.find("panda") != std::string::npos;
     const int first = on_hand ? 1 : 0, end = on_hand ? 2 : test::repetitions(3, 1);
     for (int t = first; t < end; ++t) {
@@ -61,7 +61,7 @@ TEST(SimulationPlan, EachShippedRobotWithACameraHasOne) {
 }
 
 TEST(SimulationPlan, ARobotThatIsItsOwnTargetNeedsASurfaceThatMovesAgainstItsCamera) {
-  const Robot robot = shipped("robots/fetch/fetch.urdf");
+  const Robot robot = example_robot("robots/fetch/fetch.urdf");
   Diagnostics diagnostics;
   const auto plan_with = [&](const RobotSurface& surface) {
     return read_simulation(robot, "", "robot", 1, diagnostics, nullptr, [&] { return surface; });
@@ -95,7 +95,7 @@ TEST(SimulationPlan, ARobotThatIsItsOwnTargetNeedsASurfaceThatMovesAgainstItsCam
 }
 
 TEST(SimulationPlan, ACameraOnTheHandLooksAtABoardThatStands) {
-  const SimulationPlan plan = plan_of(shipped("robots/panda/panda.urdf"), "");
+  const SimulationPlan plan = plan_of(example_robot("robots/panda/panda.urdf"), "");
   EXPECT_EQ(plan.target.link, "panda_link0");
   EXPECT_EQ(plan.setup.truth["checkerboard_z"].value, plan.target.pose.translation.z());
   EXPECT_TRUE(plan.setup.frames.contains("camera_color_joint"));
@@ -103,7 +103,7 @@ TEST(SimulationPlan, ACameraOnTheHandLooksAtABoardThatStands) {
 }
 
 TEST(SimulationPlan, EachLedOfFetchLightsWhereItIs) {
-  SimulationPlan plan = plan_of(shipped("robots/fetch/fetch.urdf"), "leds");
+  SimulationPlan plan = plan_of(example_robot("robots/fetch/fetch.urdf"), "leds");
   plan.poses = 3;
   SimulatedRobot robot(plan.setup);
   int seen = 0;
