@@ -224,6 +224,9 @@ TEST(CaptureConfig, ErrorsNameTheLineAndWhatWasProbablyMeant) {
               HasSubstr("points_x"));
   EXPECT_THAT(first_error("    type: CheckerboardFinder\n    pionts_x: 5\n"),
               HasSubstr("unknown key 'pionts_x'; did you mean 'points_x'?"));
+  EXPECT_THAT(first_error("    type: ScanFinder\n    z_repeats: 1000000\n"),
+              HasSubstr("capture.yaml:4: finder 'led_finder': z_repeats: 1000000 copies of a scan; "
+                        "the most are 1000"));
   EXPECT_THAT(first_error("    topic: /points\n"), HasSubstr("type is missing"));
   EXPECT_THAT(CaptureFile("chains: []\n").diagnostics.errors,
               ElementsAre(HasSubstr("features has no finders")));

@@ -78,6 +78,22 @@ TEST_F(Install, PutsFilesBesideTheLaunchFileAndNamesThemThere) {
   EXPECT_THAT(diagnostics_.warnings, IsEmpty());
 }
 
+TEST_F(Install, LeavesTheRobotsModelIfTheResultIsOfASensorAlone) {
+  for (const std::string sensor : {"sensor", "magnetometer"}) {
+    write("robot/robot.launch", test::kLaunch);
+    write("out/calibrated.urdf", "<robot name=\"base\"><link name=\"base_link\"/><link name=\"" +
+                                     sensor + "\"/><joint name=\"" + sensor +
+                                     "_joint\" type=\"fixed\"><parent link=\"base_link\"/><child "
+                                     "link=\"" +
+                                     sensor + "\"/></joint></robot>");
+    install();
+    EXPECT_THAT(launch(), HasSubstr("$(find robot)/robot.urdf"));
+    EXPECT_THAT(launch(), HasSubstr("2026-01-02 03:04:05"));
+    EXPECT_FALSE(fs::exists(folder_ / "robot/calibrated_2026_01_02_03_04_05.urdf"));
+    EXPECT_THAT(diagnostics_.warnings.back(), HasSubstr("robot_description is left as it is"));
+  }
+}
+
 TEST_F(Install, KeepsTheByteOrderMark) {
   write("robot/robot.launch", std::string("\xEF\xBB\xBF") + test::kLaunch);
   install();

@@ -222,7 +222,13 @@ inline void read_tags(ConfigMap& map, CornerKind corners, AprilTagSettings& tags
   finder.frame = map.text("transform_frame").value_or("");
   finder.least = read_corner(map, "min_", finder.least);
   finder.most = read_corner(map, "max_", finder.most);
+  constexpr int kMostRepeats = 1000;
   finder.z_repeats = map.count("z_repeats", finder.z_repeats);
+  if (finder.z_repeats > kMostRepeats) {
+    map.error(map.find("z_repeats")->place, "z_repeats: " + std::to_string(finder.z_repeats) +
+                                                " copies of a scan; the most are " +
+                                                std::to_string(kMostRepeats));
+  }
   finder.z_offset = map.number("z_offset", finder.z_offset);
   map.ignore({"debug"});
   return finder;

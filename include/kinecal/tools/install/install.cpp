@@ -46,7 +46,7 @@ namespace {
 
 /// The files of a result under their names on the robot.
 struct InstalledFiles {
-  OutputFile urdf;
+  OutputFile urdf;                  ///< without a name: the result has no robot
   std::vector<OutputFile> cameras;  ///< as ResultFolder::cameras
 };
 
@@ -176,7 +176,13 @@ void add_base_settings(const ResultFolder& result, const LaunchText& launch,
   LaunchSettings settings(names, diagnostics);
   constexpr LaunchElement kParam = LaunchElement::param, kArg = LaunchElement::arg;
   settings.add(kParam, "", launch_key::kDate, "value", date_for_people(result.date));
-  settings.add(kParam, "", launch_key::kRobot, "textfile", (folder / files.urdf.name).string());
+  if (result.has_robot) {
+    settings.add(kParam, "", launch_key::kRobot, "textfile", (folder / files.urdf.name).string());
+  } else {
+    diagnostics.warnings.push_back(
+        fmt::format("{} is left as it is: {} is of a sensor on one link, not of the robot",
+                    launch_key::kRobot, result.urdf.name));
+  }
   for (std::size_t i = 0; i < result.cameras.size(); ++i) {
     const ResultCamera& camera = result.cameras[i];
     const std::string url = "file://" + (folder / files.cameras[i].name).string();
@@ -222,7 +228,8 @@ void check_is_of_ros1(const std::string& launch, const ResultFolder& result) {
 
 /// The result's files, with this date in their names.
 [[nodiscard]] InstalledFiles dated_files(const ResultFolder& result, const std::string& date) {
-  InstalledFiles files{{with_date(result.urdf.name, date), result.urdf.content}, {}};
+  InstalledFiles files;
+  if (result.has_robot) files.urdf = {with_date(result.urdf.name, date), result.urdf.content};
   for (const ResultCamera& camera : result.cameras) {
     files.cameras.push_back({with_date(camera.file.name, date), camera.file.content});
   }
@@ -231,7 +238,7 @@ void check_is_of_ros1(const std::string& launch, const ResultFolder& result) {
 
 [[nodiscard]] std::vector<OutputFile> list(const InstalledFiles& files) {
   std::vector<OutputFile> all = files.cameras;
-  all.push_back(files.urdf);
+  if (!files.urdf.name.empty()) all.push_back(files.urdf);
   return all;
 }
 

@@ -128,6 +128,14 @@ void check_is_whole(const std::filesystem::path& folder, const JsonValue& report
   for (const ResultCamera& camera : result.cameras) check(camera.file.name, camera.file.content);
 }
 
+/// True for the URDF that `init` writes for a base or a magnetometer without the robot's: a sensor on one link.
+[[nodiscard]] bool is_sensor_alone(const Robot& robot) {
+  if (robot.joints().size() != 1) return false;
+  const Joint& joint = robot.joints().front();
+  return joint.type == JointType::fixed &&
+         (joint.name == "sensor_joint" || joint.name == "magnetometer_joint");
+}
+
 /// Reads whether the calibration converged, and the first reason against using it.
 void read_report(const std::filesystem::path& report, ResultFolder& result) {
   if (!std::filesystem::exists(report)) return;
@@ -177,7 +185,8 @@ ResultFolder read_result_folder(const std::filesystem::path& folder) {
   }
   if (result.urdf.name.empty())
     throw InputError(path.string() + ": does not name a URDF; it needs a line 'urdf: FILE'");
-  (void)parse_urdf(result.urdf.content, urdf_path.string());
+  const Robot robot = parse_urdf(result.urdf.content, urdf_path.string());
+  result.has_robot = !detail::is_sensor_alone(robot);
   detail::read_report(folder / "report.json", result);
   return result;
 }

@@ -31,13 +31,14 @@ struct ResultCamera {
 
 /// The files of a calibration.
 struct ResultFolder {
-  std::string date;                           ///< Y_m_d_H_M_S
-  OutputFile urdf;                            ///< the calibrated URDF
-  OutputFile values;                          ///< the file of the parameters
-  OutputFile report;                          ///< report.json; without a name if absent
-  std::vector<ResultCamera> cameras;          ///< the calibrated cameras
-  std::map<std::string, double> parameters;   ///< name and value: radians, metres or relative
-  OutputFile base;                            ///< base_calibration.yaml; without a name if absent
+  std::string date;                          ///< Y_m_d_H_M_S
+  OutputFile urdf;                           ///< the calibrated URDF
+  bool has_robot = true;                     ///< false: the URDF is a sensor on a link, of no robot
+  OutputFile values;                         ///< the file of the parameters
+  OutputFile report;                         ///< report.json; without a name if absent
+  std::vector<ResultCamera> cameras;         ///< the calibrated cameras
+  std::map<std::string, double> parameters;  ///< name and value: radians, metres or relative
+  OutputFile base;                           ///< base_calibration.yaml; without a name if absent
   std::map<std::string, double> base_values;  ///< of that file: see files/results/base_file.hpp
   std::optional<bool> converged;              ///< nullopt if there is no report
   std::string refusal;                        ///< why not to use it, according to the report
