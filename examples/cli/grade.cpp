@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -64,6 +65,22 @@ void read(const GradeOptions& options, Episode& episode) {
   } catch (const std::exception& error) {
     episode.refused = error.what();
   }
+}
+
+/// What is alike in copies of an episode: positions and features.
+std::string content_of(const std::vector<Sample>& samples) {
+  std::string bytes;
+  const auto add = [&](const double* numbers, std::size_t count) {
+    bytes.append(reinterpret_cast<const char*>(numbers), count * sizeof(double));
+  };
+  for (const Sample& sample : samples) {
+    add(sample.joint_positions.data(), sample.joint_positions.size());
+    for (const Observation& observation : sample.observations) {
+      bytes += observation.sensor;
+      for (const Feature& feature : observation.features) add(feature.point.data(), 3);
+    }
+  }
+  return bytes;
 }
 
 /// Holds an episode against a result.
@@ -148,8 +165,14 @@ class HeldOut {
           options.config +
           ": compares the robot's own surface; calibrate, and give the result with --result");
     }
+    std::map<std::string, std::size_t> known;
     for (std::size_t i = 0; i < episodes.size(); ++i) {
-      if (episodes[i].refused.empty()) used_.push_back(i);
+      if (!episodes[i].refused.empty()) continue;
+      const auto [first, is_new] = known.emplace(content_of(episodes[i].samples), i);
+      (is_new ? used_ : copies_).push_back(i);
+      if (is_new) continue;
+      say(stderr, "warning: {} is a copy of {}: it counts once\n", episodes[i].name,
+          episodes[first->second].name);
     }
     readable_ = used_.size();
   }
@@ -158,6 +181,10 @@ class HeldOut {
   /// @throws InputError  if no majority agrees, or it cannot be calibrated
   void judge_all() {
     const double level = options_.level / static_cast<double>(std::max<std::size_t>(1, readable_));
+    if (readable_ < 2) {
+      throw InputError(fmt::format("{} to be compared with others; give a result with --result",
+                                   readable_ == 1 ? "one episode, and none" : "no episode"));
+    }
     std::vector<std::size_t> out;
     while (true) {
       if (2 * used_.size() <= readable_ || used_.size() < 2) {
@@ -173,6 +200,7 @@ class HeldOut {
       std::erase(used_, worst);
     }
     const StoredResult result = calibrated(used_, true);
+    out.insert(out.end(), copies_.begin(), copies_.end());
     for (const std::size_t i : out) judge(result, options_, level, episodes_[i]);
   }
 
@@ -223,7 +251,8 @@ class HeldOut {
   const GradeOptions& options_;
   std::vector<Episode>& episodes_;
   Input input_;
-  std::vector<std::size_t> used_;  ///< with which is calibrated
+  std::vector<std::size_t> used_;    ///< with which is calibrated
+  std::vector<std::size_t> copies_;  ///< of others
   std::size_t readable_ = 0;
 };
 

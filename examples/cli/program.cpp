@@ -49,6 +49,26 @@ CLI::Validator one_word_of(const std::vector<std::string>& words) {
   return {check, one_of("", words).substr(1)};
 }
 
+/// Refuses what is not a number above zero, or above `most`.
+CLI::Validator above_zero(double most, const std::string& unit) {
+  const auto check = [most, unit](const std::string& value) -> std::string {
+    double number = 0.0;
+    if (CLI::detail::lexical_cast(value, number) && number > 0.0 && number <= most) return "";
+    return fmt::format("'{}' is no number above 0 and at most {:g}{}", kinecal::printable(value),
+                       most, unit.empty() ? "" : " " + unit);
+  };
+  return {check, ""};
+}
+
+/// A unit alone is no length: before a transformation takes it for one.
+CLI::Validator with_a_number() {
+  return {[](std::string& value) -> std::string {
+            const bool has_digit = value.find_first_of("0123456789") != std::string::npos;
+            return has_digit ? "" : "'" + kinecal::printable(value) + "' has no number";
+          },
+          ""};
+}
+
 std::vector<std::string> target_words() {
   std::vector<std::string> words;
   for (const kinecal::InitTargetWord& target : kinecal::kInitTargets)
@@ -463,8 +483,9 @@ void add_init(CLI::App& command, InitOptions& options) {
                   "sensor_name of the camera in the samples, default: 'camera'")
       ->type_name("NAME");
   const auto add_of_base = [&](const char* name, auto& value, const char* says, const char* type) {
-    command.add_option(name, value, std::string("of a base: ") + says)->type_name(type);
+    return command.add_option(name, value, std::string("of a base: ") + says)->type_name(type);
   };
+  constexpr double kWheel = 2.0, kBase = 20.0;  // metres
   add_of_base("--drive", options.drive,
               "odometry (as reported), differential, mecanum or tricycle (positions of wheels); "
               "default: what the recording has",
@@ -479,18 +500,22 @@ void add_init(CLI::App& command, InitOptions& options) {
   add_of_base(
       "--wheel-radius", options.wheel_radius,
       "nominal, metres; if the table counts ticks, metres a tick; default: that of the URDF",
-      "METRES");
+      "METRES")
+      ->check(above_zero(kWheel, "metres"));
   add_of_base("--track-width", options.track_width,
               "nominal distance of left and right wheels, metres; default: that of the URDF.  With "
               "--drive odometry: what the driver has, which 'install' corrects; default: not known",
-              "METRES");
+              "METRES")
+      ->check(above_zero(kBase, "metres"));
   add_of_base("--wheelbase", options.wheelbase,
-              "nominal distance of the axles, metres; default: that of the URDF", "METRES");
+              "nominal distance of the axles, metres; default: that of the URDF", "METRES")
+      ->check(above_zero(kBase, "metres"));
   add_of_base(
       "--gyro-scale", options.gyro_scale,
       "scale of the gyroscope in its driver, rad/s a count, which 'install' corrects; default: "
       "not known",
-      "FACTOR");
+      "FACTOR")
+      ->check(above_zero(1e3, ""));
   command
       .add_option("--base", options.base,
                   "link in which measurements are compared; default: the root of the URDF")
@@ -1103,7 +1128,8 @@ void add_watch(CLI::App& command, WatchOptions& options) {
       ->transform(CLI::AsNumberWithUnit(
           std::map<std::string, double>{{"mm", 1.0}, {"cm", 10.0}, {"m", 1000.0}, {"in", 25.4}},
           CLI::AsNumberWithUnit::CASE_SENSITIVE, "LENGTH"))
-      ->check(CLI::PositiveNumber)
+      ->transform(with_a_number())
+      ->check(above_zero(1e6, "mm"))
       ->option_text("LENGTH");
   command
       .add_option("--ahead", options.ahead,

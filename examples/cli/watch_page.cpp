@@ -12,6 +12,7 @@
 #include "kinecal/report/charts/drift_over_time.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/svg_text.hpp"
+#include "kinecal/text/characters.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/reading.hpp"
 #include "moved_text.hpp"
@@ -127,6 +128,17 @@ std::string why(const SeenRobot& robot) {
   return text + size_text(robot);
 }
 
+/// Each recording that was refused, and why.
+std::vector<std::pair<std::string, std::string>> refusals(const SeenRobot& robot) {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const WatchedRecording& recording : robot.history.recordings) {
+    if (recording.state == RecordingState::refused) {
+      all.emplace_back(recording.name, recording.reason);
+    }
+  }
+  return all;
+}
+
 /// Why the recordings that were refused were.
 std::string refused_text(const SeenRobot& robot) {
   if (!robot.fault.empty() || robot.finding.usable == 0 || robot.finding.refused == 0) return "";
@@ -176,6 +188,10 @@ Json json_of(const SeenRobot& robot) {
              {"is_frame", of.moved->is_frame},
              {"parameters", parameters(moved_by(*of.moved), "change")}};
   }
+  Json refused = Json::array();
+  for (const auto& [name, reason] : refusals(robot)) {
+    refused.push_back({{"name", name}, {"reason", reason}});
+  }
   const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(); };
   const std::optional<When>& passes = robot.decision.passes;
   return {{"name", robot.name},
@@ -183,6 +199,7 @@ Json json_of(const SeenRobot& robot) {
           {"why", why(robot)},
           {"recordings", of.usable},
           {"refused", of.refused},
+          {"refusals", refused},
           {"being_written", robot.written},
           {"last", last},
           {"has_moved", of.has_moved},
@@ -260,7 +277,8 @@ std::string day_text(double time) {
 
 std::string line_of(const SeenRobot& robot) {
   return fmt::format(
-      "{}: {}: {}{}{}\n", robot.name, state_text(robot), why(robot), refused_text(robot),
+      "{}: {}: {}{}{}\n", detail::one_line(robot.name), state_text(robot),
+      detail::one_line(why(robot)), detail::one_line(refused_text(robot)),
       robot.written > 0 ? fmt::format("; {} still being written", robot.written) : "");
 }
 
@@ -268,7 +286,7 @@ std::string summary_of(const std::vector<SeenRobot>& robots) {
   std::size_t hold = 0;
   std::string recalibrate, not_known, faulty;
   const auto add = [](std::string& names, const char* title, const SeenRobot& robot) {
-    names += (names.empty() ? title : ", ") + robot.name;
+    names += (names.empty() ? title : ", ") + detail::one_line(robot.name);
   };
   for (const SeenRobot& robot : robots) {
     if (!robot.fault.empty()) {
@@ -313,6 +331,16 @@ std::string watch_page(const std::string& tree, const std::vector<SeenRobot>& ro
   }
   std::string figures;
   for (const Chart& chart : charts) figures += detail::html_figure(chart);
+  std::vector<std::vector<std::string>> refused = {{"robot", "recording", "why it is refused"}};
+  for (const SeenRobot* robot : sorted) {
+    for (const auto& [name, reason] : refusals(*robot)) {
+      refused.push_back({robot->name, name, reason});
+    }
+  }
+  const std::string not_used = refused.size() == 1
+                                   ? ""
+                                   : "<section id=\"refused\"><h2>Refused</h2>\n" +
+                                         detail::html_table(refused, "ttl") + "</section>\n";
   const std::string title = summary_of(robots);
   const std::string body = fmt::format(
       "<header class=\"verdict {}\">\n<h1>{}: <strong>{}</strong></h1>\n</header>\n<main>\n"
@@ -321,9 +349,9 @@ std::string watch_page(const std::string& tree, const std::vector<SeenRobot>& ro
       "that drifts or has "
       "moved, with one standard deviation. Of the other robots, residuals by what noise and the "
       "uncertainty of the result "
-      "make.</p>\n<div class=\"pair\">{}</div>\n</section>\n</main>\n",
+      "make.</p>\n<div class=\"pair\">{}</div>\n</section>\n{}</main>\n",
       is_good ? "good" : "care", detail::html_name(tree), detail::html_text(title),
-      detail::html_table(rows, "ttnnl"), figures);
+      detail::html_table(rows, "ttnnl"), figures, not_used);
   return html_file({tree + ": " + title, version(), body, ""});
 }
 

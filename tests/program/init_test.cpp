@@ -411,6 +411,11 @@ TEST_F(Init, RefusesOptionsThatABaseOrAMagnetometerDoesNotHave) {
   EXPECT_THAT(init("ur5e", "--target magnetometer,leds").err,
               HasSubstr("magnetometer does not go into one configuration with others; call init "
                         "for magnetometer alone"));
+  for (const char* size : {"--track-width -1", "--gyro-scale 0", "--wheel-radius 60"}) {
+    EXPECT_THAT(init("ur5e", std::string("--target base --drive odometry --seen pose ") + size).err,
+                HasSubstr("is no number above 0 and at most"))
+        << size;
+  }
   EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
 }
 

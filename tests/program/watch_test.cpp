@@ -123,6 +123,7 @@ TEST_F(Watched, ReadsOnlyWhatIsNewAndWhole) {
   EXPECT_EQ(cut.code, 1) << "the newest is refused: " << cut.out;
   EXPECT_THAT(cut.out, HasSubstr("arm: holds: 2 recordings, the last on "));
   EXPECT_THAT(cut.out, HasSubstr("; 1 recording refused, the last 'night_99.yaml': "));
+  EXPECT_THAT(watch("--json").out, HasSubstr("\"name\": \"night_99.yaml\""));
   add_night("fleet/arm", 1, 3);
   const Outcome whole = watch();
   EXPECT_EQ(whole.code, 0) << whole.out << whole.err;
@@ -137,6 +138,11 @@ TEST_F(Watched, ReadsOnlyWhatIsNewAndWhole) {
 
   fs::create_directories(folder_ / "fleet/broken/result");
   EXPECT_THAT(watch().out, HasSubstr("\n1 of 2 robots holds; cannot be checked: broken\n"));
+
+  fs::rename(folder_ / "fleet/broken", folder_ / "fleet/z\nz: holds: all is well");
+  EXPECT_THAT(watch().out, Not(HasSubstr("\nz: holds"))) << "a line is of one robot";
+  EXPECT_THAT(watch("--limit mm").err, HasSubstr("'mm' has no number"));
+  EXPECT_THAT(watch("--limit 0").err, HasSubstr("is no number above 0"));
 
   write("fleet/history.sqlite",
         "something else, which is certainly not a data base of SQLite, but long enough");
@@ -206,6 +212,20 @@ TEST_F(Watched, GradesEpisodes) {
                                HasSubstr("e5.yaml: not consistent: frame 'tracker_frame' by "),
                                HasSubstr("5 of 7 episodes consistent\n")));
   EXPECT_EQ(json("g.json")["not_consistent"].as<int>(), 2);
+  const std::string bad = read("episodes/e4.yaml");
+  for (const char* copy : {"f0", "f1", "f2", "f3", "f4", "f5", "f6", "f7"}) {
+    write(std::string("episodes/") + copy + ".yaml", bad);
+  }
+  const Outcome copies = kinecal("grade episodes --urdf arm.urdf --config c.yaml");
+  EXPECT_THAT(copies.err, HasSubstr("f7.yaml is a copy of episodes/e4.yaml: it counts once"));
+  EXPECT_THAT(copies.out,
+              AllOf(HasSubstr("e3.yaml: consistent"), HasSubstr("f7.yaml: not consistent"),
+                    HasSubstr("5 of 15 episodes consistent\n")));
+  for (const char* copy : {"f0", "f1", "f2", "f3", "f4", "f5", "f6", "f7"}) {
+    fs::remove(folder_ / "episodes" / (std::string(copy) + ".yaml"));
+  }
+  EXPECT_THAT(kinecal("grade episodes/e1.yaml --urdf arm.urdf --config c.yaml").err,
+              HasSubstr("one episode, and none to be compared with others"));
   add_robot("robot", 100);
   fs::remove(folder_ / "episodes/e4.yaml");
   write("episodes/e5.yaml", "[");
