@@ -11,6 +11,7 @@
 #include "kinecal/trust/calibrate_and_judge.hpp"
 #include "kinecal/trust/captures/capture_causes.hpp"
 #include "kinecal/trust/captures/captures.hpp"
+#include "kinecal/trust/captures/jumps.hpp"
 #include "kinecal/trust/captures/ruined.hpp"
 #include "kinecal/trust/estimated_noise.hpp"
 #include "kinecal/trust/f_distribution.hpp"

@@ -21,6 +21,15 @@ TEST(LeastNorm, SharesWhatOneRowLeavesUndetermined) {
   EXPECT_LT((detail::least_norm_solution(a, b) - expected).norm(), kRounding);
 }
 
+TEST(LeastNorm, OfNothingIsZero) {
+  const Eigen::MatrixXd none =
+      detail::least_norm_solution(Eigen::MatrixXd(3, 0), Eigen::MatrixXd::Identity(3, 3));
+  EXPECT_EQ(none.rows(), 0);
+  EXPECT_EQ(none.cols(), 3);
+  EXPECT_TRUE(
+      detail::least_norm_solution(Eigen::MatrixXd(0, 2), Eigen::MatrixXd(0, 1)).isZero(0.0));
+}
+
 TEST(LeastNorm, OfTheIdentityIsThePseudoInverse) {
   const Eigen::MatrixXd singular = Eigen::Vector3d(4.0, 0.0, 0.5).asDiagonal();
   const Eigen::Matrix3d expected = Eigen::Vector3d(0.25, 0.0, 2.0).asDiagonal();

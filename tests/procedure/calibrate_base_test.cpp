@@ -145,27 +145,6 @@ constexpr const char* kScales =
     "base_track_width_scale, base_left_rollout_scale, base_right_rollout_scale, imu_scale, "
     "imu_bias";
 
-/// The calibration of a drive in which some readings keep a value.
-CalibratedRobot with_frozen(const std::vector<std::string>& names) {
-  std::vector<Sample> samples = simulate_base(wrong_base(), all_runs(), 6).samples;
-  for (Sample& sample : samples) {
-    for (const std::string& name : names) sample.conditions[name] = 0.25;
-  }
-  return calibrate_robot(setup_of(kScales, kWheelsAndGyro, std::move(samples)));
-}
-
-TEST(CalibrateBase, WhatNothingDeterminesIsNotUsed) {
-  for (const auto& [names, block] :
-       {std::pair(std::vector<std::string>{"left_wheel", "right_wheel"}, "'base'"),
-        {{"gyro_yaw"}, "'imu'"}}) {
-    const CalibratedRobot calibrated = with_frozen(names);
-    EXPECT_EQ(calibrated.judgement.verdict, Grade::do_not_use) << block;
-    EXPECT_THAT(calibrated.judgement.reasons,
-                testing::Contains(testing::AllOf(HasSubstr(block), HasSubstr("do not determine"))));
-  }
-  EXPECT_NE(with_frozen({"left_wheel"}).judgement.verdict, Grade::good);
-}
-
 /// Turns alone determine the ratio of rollout and track width: neither is written.
 TEST(CalibrateBase, WhatIsNotDeterminedIsNotWritten) {
   const std::vector<BaseRun> turns{{0.0, 0.5, 12.0}, {0.0, -0.5, 12.0}};
@@ -180,6 +159,22 @@ TEST(CalibrateBase, WhatIsNotDeterminedIsNotWritten) {
                                     {{"base", 0.37476}}),
               testing::AllOf(HasSubstr("# track_width_scale: not determined\n"),
                              testing::Not(HasSubstr("odom")), HasSubstr("imu_scale: ")));
+}
+
+/// An odometry that begins anew is one interval, which is left out; the result is as good as without it.
+TEST(CalibrateBase, ARestartOfTheOdometryIsLeftOut) {
+  std::vector<Sample> samples = simulate_base(wrong_base(), all_runs(), 6).samples;
+  const std::size_t restart = samples.size() / 2 + 3;
+  for (std::size_t i = restart; i < samples.size(); ++i) samples[i].conditions["odom_x"] += 5.0;
+  const CalibratedRobot calibrated = calibrate_robot(setup_of(
+      "base_track_width_scale, base_rollout_scale, base_x, base_y, base_yaw",
+      "- {name: base, type: odometry_to_pose, translation_scale: 500, rotation_scale: 500}\n",
+      samples));
+  EXPECT_EQ(calibrated.judgement.verdict, Grade::good);
+  expect_found(calibrated, "base_track_width_scale", 1.02);
+  expect_found(calibrated, "base_rollout_scale", 0.98);
+  ASSERT_EQ(calibrated.left_out.size(), 1u);
+  EXPECT_EQ(calibrated.left_out[0].source, samples[restart].source);
 }
 
 TEST(CalibrateBase, TwoRowsAreTooFew) {

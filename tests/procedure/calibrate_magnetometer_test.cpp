@@ -130,6 +130,19 @@ TEST(CalibrateMagnetometer, ATurnInPlaceShowsTwoComponents) {
       << "within the plane";
 }
 
+/// One reading with a wrong bit is left out, by name.
+TEST(CalibrateMagnetometer, ABadReadingIsLeftOut) {
+  for (const double bad : {200.0, 3000.0}) {
+    std::vector<Sample> samples = test::with_soft_iron().samples(200, 3);
+    samples[50].conditions = {{"mag_x", bad}, {"mag_y", -bad}, {"mag_z", bad}};
+    const CalibratedRobot found = calibrated_from(samples);
+    EXPECT_EQ(found.judgement.verdict, Grade::good) << bad;
+    EXPECT_THAT(found.setup.diagnostics.notes, IsEmpty());
+    ASSERT_EQ(found.left_out.size(), 1u) << bad;
+    EXPECT_EQ(found.left_out[0].source, samples[50].source);
+  }
+}
+
 /// Under upstream's keys, tesla.
 TEST(CalibrateMagnetometer, TheFileHasUpstreamsKeys) {
   CalibratedRobot found = calibrated_from(SimulatedMagnetometer{}.samples(100, 5));

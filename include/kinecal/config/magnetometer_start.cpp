@@ -42,9 +42,35 @@ struct Scatter {
     for (const Sample& sample : samples) {
       if (const auto reading = reading_of(sample)) readings.push_back(*reading);
     }
+    leave_out_jumps();
     const double share = readings.empty() ? 0.0 : 1.0 / static_cast<double>(readings.size());
     for (const auto& one : readings) mean += share * one;
     for (const auto& one : readings) square += share * (one - mean) * (one - mean).transpose();
+  }
+
+ private:
+  /// Takes off single readings far outside of all others, which would turn the plane and move the start.
+  void leave_out_jumps() {
+    constexpr double kTimes = 2.5;  // of how far nine of ten are from their middle
+    constexpr std::size_t kFewest = 12, kOneOf = 50;
+    if (readings.size() < kFewest) return;
+    Vector3<double> middle;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      std::vector<double> along;
+      for (const auto& one : readings) along.push_back(one(axis));
+      const auto half = along.begin() + static_cast<std::ptrdiff_t>(along.size() / 2);
+      std::nth_element(along.begin(), half, along.end());
+      middle(axis) = *half;
+    }
+    std::vector<double> far;
+    for (const auto& one : readings) far.push_back((one - middle).norm());
+    std::sort(far.begin(), far.end());
+    const double most = kTimes * far[far.size() * 9 / 10];
+    const auto is_jump = [&](const Vector3<double>& one) { return (one - middle).norm() > most; };
+    const auto jumps = std::count_if(readings.begin(), readings.end(), is_jump);
+    if (static_cast<std::size_t>(jumps) > std::max<std::size_t>(1, readings.size() / kOneOf))
+      return;
+    std::erase_if(readings, is_jump);
   }
 };
 

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/explain/drive_suspects.ipp"
 #include "kinecal/explain/pose_suspects.ipp"
 #include "kinecal/kinematics/chain.hpp"
 
@@ -323,6 +324,7 @@ std::vector<Suspect> suspects_of(const Config& config, const Robot& robot,
   detail::add_features(config, samples, all);
   detail::add_models(config, all);
   detail::add_pose_suspects(config, samples, all);
+  detail::add_drive_suspects(config, all);
   detail::add_rows(config, joints, samples, all);
   detail::add_couplings(config, robot, joints, all);
   return all;

@@ -47,7 +47,7 @@ struct Suspect {
 [[nodiscard]] double* position_in(Sample& sample, const std::string& joint);
 
 /// All that kinecal suspects: signs, order and names of joints, quarter turns of zeros, couplings, order of features, units,
-/// axes and scale of points, forms of poses, frames and observations of models, rows that belong to neighbours.
+/// axes and scale of points, forms of poses, signs, order and units of what a base reads, frames and observations of models, rows that belong to neighbours.
 /// @param samples  that fit badly
 [[nodiscard]] std::vector<Suspect> suspects_of(const Config& config, const Robot& robot,
                                                std::span<const Sample> samples);

@@ -10,6 +10,7 @@ namespace kinecal::detail {
 
 KINECAL_INLINE Eigen::MatrixXd least_norm_solution(const Eigen::MatrixXd& a,
                                                    const Eigen::MatrixXd& b) {
+  if (a.size() == 0) return Eigen::MatrixXd::Zero(a.cols(), b.cols());  // Eigen reads beyond it
   return a.completeOrthogonalDecomposition().solve(b);
 }
 

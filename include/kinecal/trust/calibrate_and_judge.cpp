@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "kinecal/trust/captures/capture_causes.hpp"
+#include "kinecal/trust/captures/jumps.hpp"
 #include "kinecal/trust/captures/ruined.hpp"
 #include "kinecal/trust/estimated_noise.hpp"
 #include "kinecal/trust/judge_input.hpp"
@@ -55,15 +56,25 @@ class Procedure {
           !options_.keep_outliers && judged.result.converged && !judged.assessments.empty();
       return usable ? &judged.assessments.back() : nullptr;
     };
-    JudgedResult judged =
-        fit_without_ruined([&] { return fit(); }, last,
-                           [&](const JudgedResult& of, const std::vector<CaptureError>& ruined) {
-                             std::map<int, std::string> why;
-                             for (const CaptureError& error : ruined) {
-                               why[error.sample] = capture_text(error, of.assessments.back());
-                             }
-                             leave_out(why);
-                           });
+    const auto fit_others = [&] {
+      return fit_without_ruined(
+          [&] { return fit(); }, last,
+          [&](const JudgedResult& of, const std::vector<CaptureError>& ruined) {
+            std::map<int, std::string> why;
+            for (const CaptureError& error : ruined) {
+              why[error.sample] = capture_text(error, of.assessments.back());
+            }
+            leave_out(why);
+          });
+    };
+    JudgedResult judged = fit_others();
+    // A fit that a jump led astray may have converged, at the bounds of its parameters.
+    if (judged.judgement.verdict == Grade::do_not_use && !options_.keep_outliers) {
+      if (const auto jumps = jumps_at_start(calibration_); !jumps.empty()) {
+        leave_out(jumps);
+        judged = fit_others();
+      }
+    }
     judge_left_out(static_cast<int>(std::ssize(left_out_) - excluded),
                    static_cast<int>(std::ssize(all_) - excluded), judged.judgement);
     judged.numbers = numbers_;

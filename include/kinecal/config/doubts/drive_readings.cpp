@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -105,19 +106,21 @@ void check_stuck(const BlockConfig& block, const std::vector<std::string>& names
   return *at;
 }
 
-/// Times that would let the base crawl or race.
-void check_unit_of_time(const BlockConfig& block, const std::vector<std::string>& names,
+/// Times by which the base would crawl.
+/// @param names  of readings; wheels, whose unit may be ticks, do not count
+void check_unit_of_time(const BlockConfig& block, const std::set<std::string>& names,
                         std::span<const Sample> samples, Diagnostics& diagnostics) {
-  constexpr double kMoved = 0.3, kSlow = 0.02, kFast = 50.0;  // radians or metres; a second
+  constexpr double kMoved = 0.3, kSlow = 0.02;  // radians or metres; a second
   double fastest = 0.0;
   std::string of;
   for (const std::string& name : names) {
-    if (name == "time" || !(range_of_steps(samples, name) > kMoved)) continue;
+    if (name == "time" || name.ends_with("wheel") || name == "steering") continue;
+    if (!(range_of_steps(samples, name) > kMoved)) continue;
     const double rate = largest_rate(samples, name);
     if (rate > fastest) of = name;
     fastest = std::max(fastest, rate);
   }
-  if (of.empty() || (fastest > kSlow && fastest < kFast)) return;
+  if (of.empty() || fastest > kSlow) return;
   constexpr std::array<std::pair<double, const char*>, 3> kUnits = {
       {{1e3, "milliseconds"}, {1e6, "microseconds"}, {1e9, "nanoseconds"}}};
   constexpr double kLeast = 0.05, kMost = 20.0;  // of a base that drives
@@ -127,13 +130,14 @@ void check_unit_of_time(const BlockConfig& block, const std::vector<std::string>
     unit = fmt::format("is it in {}?  It is to be in seconds", name);
     break;
   }
-  diagnostics.error(block.place, fmt::format("by 'time', '{}' changes by {:.2g} {} a second at "
-                                             "most: {}",
-                                             of, fastest, of.ends_with("yaw") ? "rad" : "m", unit));
+  const bool is_angle = of.ends_with("yaw") || of.ends_with("angle");
+  diagnostics.error(block.place,
+                    fmt::format("by 'time', '{}' changes by {:.2g} {} a second at most: {}", of,
+                                fastest, is_angle ? "rad" : "m", unit));
 }
 
 /// Times that do not grow within a run, and their unit.
-void check_times(const BlockConfig& block, const std::vector<std::string>& names,
+void check_times(const BlockConfig& block, const std::set<std::string>& names,
                  std::span<const Sample> samples, Diagnostics& diagnostics) {
   constexpr double kMost = 0.1;  // of the times, which a recording may repeat
   std::size_t all = 0, same = 0;
@@ -165,18 +169,20 @@ void check_times(const BlockConfig& block, const std::vector<std::string>& names
 
 void check_drive_readings(const Config& config, std::span<const Sample> samples,
                           Diagnostics& diagnostics) {
-  bool has_times = false;
+  const BlockConfig* timed = nullptr;  // the first block that takes the time
+  std::set<std::string> all;
   for (const StepConfig& step : config.steps) {
     for (const BlockConfig& block : step.error_blocks) {
       const BlockEntry* entry = is_base_type(block.type) ? entry_of(block) : nullptr;
       if (entry == nullptr) continue;
       const std::vector<std::string>& names = entry->looks_before;
       check_stuck(block, names, samples, diagnostics);
-      if (has_times || std::find(names.begin(), names.end(), "time") == names.end()) continue;
-      has_times = true;
-      check_times(block, names, samples, diagnostics);
+      const bool takes_time = std::find(names.begin(), names.end(), "time") != names.end();
+      if (takes_time && timed == nullptr) timed = &block;
+      all.insert(names.begin(), names.end());
     }
   }
+  if (timed != nullptr) check_times(*timed, all, samples, diagnostics);
 }
 
 }  // namespace kinecal::detail
