@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/captures/jumps.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -35,9 +34,9 @@ void add_jumps(const Term& term, int number, const LinearFit& fit,
     if (!(most > 0.0) || !(size > kTimes * most)) continue;
     constexpr double kMost = 1e4;  // beyond it the number says nothing
     const double times = std::min(kMost, size / most);
-    jumps.emplace(sample, fmt::format("error block '{}': it jumps: it is {}{:.0f} times as far "
-                                      "off as nine of ten samples where the fit begins",
-                                      term.name, times < kMost ? "" : "over ", times));
+    jumps.emplace(sample, "error block '" + term.name + "': it jumps: it is " +
+                              (times < kMost ? "" : "over ") + std::to_string(std::lround(times)) +
+                              " times as far off as nine of ten samples where the fit begins");
   }
 }
 
