@@ -167,6 +167,7 @@ class Calibration(unittest.TestCase):
     def test_an_interruption_ends_a_solve(self) -> None:
         program = (
             "import signal, kinecal, scene\n"
+            "signal.signal(signal.SIGINT, signal.default_int_handler)  # where it is ignored, as behind &\n"
             "def interrupt(*_):\n"
             "    signal.raise_signal(signal.SIGINT)\n"
             "try:\n"
