@@ -54,6 +54,7 @@ def _build(prefix: Path) -> None:
     build = SOURCE / "build" / "wheel"
     options = {
         "CMAKE_BUILD_TYPE": "Release",
+        "CMAKE_CXX_COMPILER": os.environ.get("CXX", "g++"),  # of the presets, so that a compiler cache serves both
         "KINECAL_BUILD_TESTS": "OFF",
         "KINECAL_BUILD_BENCHMARKS": "OFF",
         "KINECAL_PYTHON": "ON",
