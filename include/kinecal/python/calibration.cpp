@@ -263,7 +263,6 @@ void bind_calibration(py::module_& module) {
       .def(
           "urdf_of_origins", [](const Calibrated& of) { return urdf_of(of, true); }, Unlocked())
       .def("text", [](const Calibrated& of) { return findings_text(of.robot); })
-      .def("line", [](const Calibrated& of) { return findings_line(of.robot); })
       .def("next", [](const Calibrated& of) { return next_step(of.robot); })
       .def("causes", [](const Calibrated& of) { return of.robot.judgement.causes; })
       .def("config", &config_text)

@@ -40,10 +40,9 @@ struct SampleArrays {
 
 /// Samples of arrays or files.
 struct SampleList {
-  std::vector<Sample> samples = {};     ///< in the order of the rows, or of the files
-  std::string urdf = {};                ///< that a recording has; may be empty
-  std::vector<std::string> files = {};  ///< that were read
-  Diagnostics diagnostics = {};         ///< of their readers
+  std::vector<Sample> samples = {};  ///< in the order of the rows, or of the files
+  std::string urdf = {};             ///< that a recording has; may be empty
+  Diagnostics diagnostics = {};      ///< of their readers
 };
 
 }  // namespace kinecal::python

@@ -102,7 +102,6 @@ SampleList read_sample_files(const std::vector<std::string>& files) {
       Recording read = read_recording(file, list.diagnostics);
       std::move(read.samples.begin(), read.samples.end(), std::back_inserter(list.samples));
       if (list.urdf.empty()) list.urdf = std::move(read.urdf);
-      list.files.push_back(file);
     }
   }
   list.diagnostics.throw_if_errors();
@@ -280,9 +279,7 @@ void bind_samples(py::module_& module) {
            })
       .def("set_camera", &set_camera_of, py::arg("sensor"), py::arg("camera"))
       .def("save", &save_samples, py::arg("path"))
-      .def_readonly("urdf", &SampleList::urdf)
-      .def_property_readonly("warnings",
-                             [](const SampleList& list) { return list.diagnostics.warnings; });
+      .def_readonly("urdf", &SampleList::urdf);
   module.def("read_poses", &read_poses, py::arg("file"));
   module.def("read_samples", &read_sample_files, py::arg("files"));
 }
